@@ -1,0 +1,1 @@
+#include "donex/core/detector.h"
