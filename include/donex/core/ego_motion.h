@@ -30,7 +30,7 @@ class EgoMotion {
  public:
   enum class Source {
     kPose,   ///< the samples' poses, interpolated
-    kTwist,  ///< the samples' velocities, integrated (the paper's way); the oldest pose is the identity
+    kTwist,  ///< the samples' velocities, integrated (the paper's way); the first pose is the identity
   };
 
   struct Options {
