@@ -1,0 +1,52 @@
+// One status an engineer understands on /diagnostics, driven by a wall clock so that silence shows, too.
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <functional>
+#include <string>
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/node_handle.h>
+
+#include "donex/ros/pipeline.h"
+
+namespace donex {
+
+class Diagnostics {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  Diagnostics(const ros::NodeHandle& nh, const ros::NodeHandle& pnh, const Pipeline& pipeline);
+
+  void cloudArrived() { arrivals_.push_back(Clock::now()); }
+  void odometryArrived() { odometry_arrivals_.push_back(Clock::now()); }
+  void scanPublished(const LabeledScan& scan);
+  void dropped(const std::string& text) { last_drop_ = text; }
+  void refused(const std::string& text) { last_refusal_ = text; }
+  void failed(const std::string& text) { last_failure_ = text; }
+
+  /// Publishes; called about once a second.
+  void publish() { updater_.force_update(); }
+
+ private:
+  struct Figures {
+    Clock::time_point published;
+    double processing, latency;  // [s]
+  };
+  using Times = std::deque<Clock::time_point>;
+
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void summarise(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+  void addFigures(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+  void addCounts(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+
+  const Pipeline& pipeline_;
+  diagnostic_updater::Updater updater_;
+  Times arrivals_, odometry_arrivals_;  // of the last seconds
+  std::deque<Figures> published_;       // of the last seconds
+  std::size_t drops_reported_ = 0;
+  std::string last_drop_, last_refusal_, last_failure_;
+};
+
+}  // namespace donex
