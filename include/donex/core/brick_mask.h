@@ -1,0 +1,112 @@
+// A set of voxels as bits: bricks of 4 x 4 x 4 voxels, one 64-bit word each, in a window that wraps around.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "donex/core/grid_window.h"
+
+namespace donex {
+
+/// The place of a voxel in a BrickMask: its brick's slot and its bit there.
+struct BrickBit {
+  std::uint32_t slot;
+  std::uint32_t bit;
+};
+
+/// Maps the voxels of a window to slots that stay the same while the window scrolls: index modulo extent.
+class BrickLayout {
+ public:
+  explicit BrickLayout(const Index3& extent) : bricks_(extent / GridWindow::kBrick), shift_(Index3::Zero()) {}
+
+  /// The window's lowest voxel has moved to `min_index` (multiples of GridWindow::kBrick).
+  void scrollTo(const Index3& min_index) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const int brick = min_index[axis] / GridWindow::kBrick;
+      shift_[axis] = (brick % bricks_[axis] + bricks_[axis]) % bricks_[axis];
+    }
+  }
+
+  std::size_t slots() const { return static_cast<std::size_t>(bricks_.cast<std::int64_t>().prod()); }
+
+  BrickBit locate(const Index3& in_window) const {
+    const int bit = (in_window.x() & 3) | (in_window.y() & 3) << 2 | (in_window.z() & 3) << 4;
+    return {slotOf(in_window.x() >> 2, in_window.y() >> 2, in_window.z() >> 2), static_cast<std::uint32_t>(bit)};
+  }
+
+  /// Lowest voxel of the brick in `slot`, in the window.
+  Index3 cornerOf(std::uint32_t slot) const {
+    const int i = static_cast<int>(slot);
+    Index3 brick(i % bricks_.x(), i / bricks_.x() % bricks_.y(), i / bricks_.x() / bricks_.y());
+    brick -= shift_;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (brick[axis] < 0) brick[axis] += bricks_[axis];
+    }
+    return brick * GridWindow::kBrick;
+  }
+
+  static Index3 voxelOfBit(const Index3& corner, int bit) {
+    return corner + Index3(bit & 3, bit >> 2 & 3, bit >> 4);
+  }
+
+ private:
+  std::uint32_t slotOf(int x, int y, int z) const {
+    x = wrapped(x + shift_.x(), bricks_.x());
+    y = wrapped(y + shift_.y(), bricks_.y());
+    z = wrapped(z + shift_.z(), bricks_.z());
+    return static_cast<std::uint32_t>((z * bricks_.y() + y) * bricks_.x() + x);
+  }
+  static int wrapped(int i, int n) { return i >= n ? i - n : i; }
+
+  Index3 bricks_;
+  Index3 shift_;
+};
+
+/// The bits of a set of voxels, and which bricks hold any.
+class BrickMask {
+ public:
+  explicit BrickMask(std::size_t slots) : words_(slots, 0) {}
+
+  std::uint64_t word(std::uint32_t slot) const { return words_[slot]; }
+  bool test(BrickBit at) const { return (words_[at.slot] >> at.bit & 1U) != 0; }
+
+  /// Adds a voxel; false where it was there already.
+  bool set(BrickBit at) {
+    const std::uint64_t mask = std::uint64_t{1} << at.bit;
+    const std::uint64_t before = words_[at.slot];
+    if (before == 0) used_.push_back(at.slot);
+    words_[at.slot] = before | mask;
+    return (before & mask) == 0;
+  }
+
+  /// Adds the voxels of a brick.
+  void add(std::uint32_t slot, std::uint64_t word) {
+    if (words_[slot] == 0 && word != 0) used_.push_back(slot);
+    words_[slot] |= word;
+  }
+
+  void clear() {
+    for (const std::uint32_t slot : used_) words_[slot] = 0;
+    used_.clear();
+  }
+
+  /// Shows `change(slot, word)` every used brick; what it returns is the brick's new word.
+  template <class Change>
+  void transform(Change&& change) {
+    std::size_t kept = 0;
+    for (const std::uint32_t slot : used_) {
+      words_[slot] = change(slot, words_[slot]);
+      if (words_[slot] != 0) used_[kept++] = slot;
+    }
+    used_.resize(kept);
+  }
+
+  const std::vector<std::uint32_t>& used() const { return used_; }
+  std::size_t bytes() const { return words_.capacity() * sizeof(words_[0]) + used_.capacity() * sizeof(used_[0]); }
+
+ private:
+  std::vector<std::uint64_t> words_;
+  std::vector<std::uint32_t> used_;  ///< slots of the words that are not zero, each once
+};
+
+}  // namespace donex
