@@ -62,6 +62,7 @@ class SequenceReader {
   void readClouds(Faults& faults);
   void readPoses(Faults& faults);
   void readTimes(Faults& faults);
+  void addTime(const std::string& line, const std::string& where, Faults& faults);
   void checkLabels(Faults& faults);
 
   std::filesystem::path directory_;

@@ -1,0 +1,57 @@
+#include "donex/io/evaluation.h"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "donex/io/sequence.h"
+
+namespace donex {
+namespace {
+
+double ratio(std::uint64_t part, std::uint64_t whole) {
+  if (whole == 0) return std::numeric_limits<double>::quiet_NaN();
+  return static_cast<double>(part) / static_cast<double>(whole);
+}
+
+}  // namespace
+
+void Counts::add(bool truly_moving, bool said_moving) {
+  std::uint64_t& count = truly_moving ? (said_moving ? true_positives : false_negatives)
+                                      : (said_moving ? false_positives : true_negatives);
+  ++count;
+}
+
+std::uint64_t Counts::total() const { return true_positives + false_positives + false_negatives + true_negatives; }
+double Counts::iou() const { return ratio(true_positives, true_positives + false_positives + false_negatives); }
+double Counts::precision() const { return ratio(true_positives, true_positives + false_positives); }
+double Counts::recall() const { return ratio(true_positives, true_positives + false_negatives); }
+double Counts::falsePositiveRate() const { return ratio(false_positives, false_positives + true_negatives); }
+
+void Evaluation::add(std::size_t scan_index, const std::vector<Eigen::Vector3f>& echoes,
+                     const std::vector<std::uint32_t>& truth, const std::vector<std::uint32_t>& prediction) {
+  const bool fit = truth.size() == echoes.size() && prediction.size() == echoes.size();
+  if (!fit) {
+    throw std::invalid_argument(std::to_string(echoes.size()) + " echoes, " + std::to_string(truth.size()) +
+                                " labels of truth, " + std::to_string(prediction.size()) + " predicted labels");
+  }
+  if (!scores(scan_index)) return;
+  ++scans_;
+  for (std::size_t i = 0; i < echoes.size(); ++i) {
+    const double range = echoes[i].head<2>().cast<double>().norm();
+    const bool in_range = range <= rules_.max_range;  // not so for NaN
+    if (in_range && isScored(truth[i])) addEcho(range, truth[i], isMoving(prediction[i]));
+  }
+}
+
+void Evaluation::addEcho(double range, std::uint32_t truth, bool said_moving) {
+  const bool truly_moving = isMoving(truth);
+  total_.add(truly_moving, said_moving);
+  by_class_[classOfLabel(truth)].add(truly_moving, said_moving);
+  const auto last_band = static_cast<std::size_t>(std::ceil(rules_.max_range / kRangeBand)) - 1;
+  const std::size_t band = std::min(static_cast<std::size_t>(range / kRangeBand), last_band);
+  if (by_range_.size() <= band) by_range_.resize(band + 1);
+  by_range_[band].add(truly_moving, said_moving);
+}
+
+}  // namespace donex

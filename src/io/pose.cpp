@@ -1,0 +1,57 @@
+#include "donex/io/pose.h"
+
+#include <fmt/format.h>
+
+namespace donex {
+namespace {
+
+constexpr double kRounding = 1e-3;  // of a rotation matrix: files hold as few as four digits
+
+/// Dividing by the norm can move the last bit: do it until nothing moves.
+Eigen::Quaterniond stablyNormalised(Eigen::Quaterniond q) {
+  constexpr int kMostRounds = 8;
+  for (int i = 0; i < kMostRounds; ++i) {
+    const Eigen::Quaterniond next = q.normalized();
+    if (next.coeffs() == q.coeffs()) break;
+    q = next;
+  }
+  return q;
+}
+
+}  // namespace
+
+Pose Pose::fromIsometry(const Eigen::Isometry3d& transform) {
+  return poseFromMatrix(transform.matrix().topRows<3>());
+}
+
+Eigen::Isometry3d Pose::isometry() const {
+  Eigen::Isometry3d transform = Eigen::Isometry3d::Identity();
+  transform.linear() = orientation.toRotationMatrix();
+  transform.translation() = position;
+  return transform;
+}
+
+Pose interpolate(const Pose& from, const Pose& to, double fraction) {
+  if (fraction == 0.0) return from;
+  if (fraction == 1.0) return to;
+  return {from.position + fraction * (to.position - from.position),
+          stablyNormalised(from.orientation.slerp(fraction, to.orientation))};
+}
+
+std::optional<std::string> faultOfPose(const PoseMatrix& matrix) {
+  if (!matrix.allFinite()) return "the pose is not finite";
+  const Eigen::Matrix3d rotation = matrix.leftCols<3>();
+  const double deviation = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (!(deviation <= kRounding)) {
+    return fmt::format("the pose is not rigid: its rotation part is off orthonormal by {:.3g}", deviation);
+  }
+  if (rotation.determinant() < 0.0) return "the pose is not rigid: its rotation part mirrors";
+  return std::nullopt;
+}
+
+Pose poseFromMatrix(const PoseMatrix& matrix) {
+  const Eigen::Matrix3d rotation = matrix.leftCols<3>();
+  return {matrix.col(3), stablyNormalised(Eigen::Quaterniond(rotation))};
+}
+
+}  // namespace donex

@@ -1,0 +1,75 @@
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "donex/io/sequence.h"
+
+namespace donex {
+namespace fs = std::filesystem;
+namespace {
+
+void createDirectory(const fs::path& directory) {
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error) throw DataError(fmt::format("{}: cannot be created: {}", directory.string(), error.message()));
+}
+
+void writeCloud(const fs::path& file, const SequenceScan& scan) {
+  std::vector<Eigen::Vector4f> rows(scan.echoes.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] << scan.echoes[i], scan.intensities[i];
+  std::ofstream stream(file, std::ios::binary);
+  stream.write(reinterpret_cast<const char*>(rows.data()),
+               static_cast<std::streamsize>(rows.size() * sizeof(Eigen::Vector4f)));
+  stream.close();
+  if (!stream) throw DataError(file.string() + ": cannot be written");
+}
+
+std::string poseLine(const Pose& pose) {
+  const PoseMatrix m = pose.isometry().matrix().topRows<3>();
+  std::string line;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      line += fmt::format("{}{:.17g}", line.empty() ? "" : " ", m(row, column));
+    }
+  }
+  return line + '\n';
+}
+
+}  // namespace
+
+SequenceWriter::SequenceWriter(fs::path directory) : directory_(std::move(directory)) {
+  createDirectory(directory_ / "velodyne");
+  if (!fs::is_empty(directory_ / "velodyne")) {
+    throw DataError((directory_ / "velodyne").string() + ": is not empty, would mix two sequences");
+  }
+  poses_.open(directory_ / "poses.txt");
+  times_.open(directory_ / "times.txt");
+  if (!poses_ || !times_) throw DataError(directory_.string() + ": cannot be written");
+}
+
+void SequenceWriter::add(const SequenceScan& scan) {
+  if (scan.intensities.size() != scan.echoes.size()) {
+    throw std::invalid_argument("as many intensities as echoes are needed");
+  }
+  const bool later = size_ == 0 || scan.stamp > last_stamp_;
+  if (!later) {
+    throw DataError(fmt::format("scan {}: its time {:.9f} s is not later than the last", size_, scan.stamp));
+  }
+  writeCloud(directory_ / "velodyne" / (scanName(size_) + ".bin"), scan);
+  // Flushed at once: what stands on disk is a whole sequence after every scan.
+  poses_ << poseLine(scan.odom_from_sensor) << std::flush;
+  times_ << fmt::format("{:.9f}\n", scan.stamp) << std::flush;
+  if (!poses_ || !times_) throw DataError(directory_.string() + ": poses.txt or times.txt cannot be written");
+  last_stamp_ = scan.stamp;
+  ++size_;
+}
+
+void SequenceWriter::add(const SequenceScan& scan, const std::vector<std::uint32_t>& labels) {
+  if (labels.size() != scan.echoes.size()) throw std::invalid_argument("as many labels as echoes are needed");
+  createDirectory(directory_ / "labels");
+  const std::string name = scanName(size_) + ".label";
+  add(scan);
+  writeLabels(directory_ / "labels" / name, labels);
+}
+
+}  // namespace donex
