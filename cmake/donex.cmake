@@ -14,13 +14,25 @@ function(donex_own_code target)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>)
 endfunction()
 
-# donex_add_test(name LIBRARIES libs... SOURCES files...): a GoogleTest program known to CTest.
+# donex_add_test(name LIBRARIES libs... SOURCES files...): a GoogleTest program known to CTest, and to
+# catkin's run_tests where there is catkin. A test that has no main() of its own gets one.
 function(donex_add_test name)
   cmake_parse_arguments(ARG "" "" "LIBRARIES;SOURCES" ${ARGN})
-  find_package(GTest REQUIRED)
-  add_executable(${name} ${ARG_SOURCES})
-  donex_own_code(${name})
-  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/test)
-  target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} GTest::gtest GTest::gtest_main)
-  add_test(NAME ${name} COMMAND ${name})
+  if(DONEX_BUILD_ROS)
+    catkin_add_gtest(${name} ${ARG_SOURCES})
+  else()
+    find_package(GTest REQUIRED)
+    add_executable(${name} ${ARG_SOURCES})
+    target_link_libraries(${name} GTest::GTest)
+    add_test(NAME ${name} COMMAND ${name})
+  endif()
+  donex_test_code(${name} ${ARG_LIBRARIES})
+endfunction()
+
+# donex_test_code(target libs...): what every test program shares.
+function(donex_test_code target)
+  donex_own_code(${target})
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/test)
+  # Without a keyword, as catkin links GoogleTest: CMake forbids to mix the two forms.
+  target_link_libraries(${target} ${ARGN} donex_test_main)
 endfunction()
