@@ -165,12 +165,25 @@ Settings readMap(const YAML::Node& map, const std::string& source, Faults& fault
   return settings;
 }
 
-std::vector<YAML::Node> parse(const std::string& text, const std::string& source) {
+std::vector<YAML::Node> parseFile(const std::string& text, const std::string& source) {
   try {
     return YAML::LoadAll(text);
   } catch (const YAML::Exception& error) {
     const std::string where = error.mark.is_null() ? source : lineOf(source, error.mark);
     throw DataError(fmt::format("{}: is not YAML: {}", where, error.msg));
+  }
+}
+
+/// Adds "name=value" to the settings, over an earlier one of that name.
+void addSetting(const std::string& text, Settings& settings, Faults& faults) {
+  const std::size_t equals = text.find('=');
+  const bool has_name = equals != std::string::npos && equals != 0;
+  if (!has_name) return faults.add(fmt::format("'{}': must be name=value", text));
+  const std::string where = fmt::format("'{}'", text);
+  try {
+    settings[text.substr(0, equals)] = {YAML::Load(text.substr(equals + 1)), where, false};
+  } catch (const YAML::Exception& error) {
+    faults.add(fmt::format("{}: is not YAML: {}", where, error.msg));
   }
 }
 
@@ -182,16 +195,11 @@ std::string readText(const std::filesystem::path& file) {
   return text.str();
 }
 
-YAML::Node parseValue(const std::string& text, const std::string& where) {
-  const auto documents = parse(text, where);
-  return documents.size() == 1 ? documents.front() : YAML::Node(YAML::NodeType::Undefined);
-}
-
 }  // namespace
 
 Config readConfigFile(const std::filesystem::path& file) {
   const std::string source = file.string();
-  const auto documents = parse(readText(file), source);
+  const auto documents = parseFile(readText(file), source);
   if (documents.size() > 1) throw DataError(source + ": holds more than one YAML document");
   Config config;
   if (documents.empty() || documents.front().IsNull()) return config;
@@ -208,15 +216,7 @@ Config readConfigFile(const std::filesystem::path& file) {
 void applySettings(Config& config, const std::vector<std::string>& texts) {
   Faults faults;
   Settings settings;
-  for (const std::string& text : texts) {
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos || equals == 0) {
-      faults.add(fmt::format("'{}': must be name=value", text));
-      continue;
-    }
-    const std::string where = fmt::format("'{}'", text);
-    settings[text.substr(0, equals)] = {parseValue(text.substr(equals + 1), where), where, false};
-  }
+  for (const std::string& text : texts) addSetting(text, settings, faults);
   Config changed = config;
   apply(settings, changed, "the settings together", faults);
   if (!faults.empty()) throw SettingError(faults.text());

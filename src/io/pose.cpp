@@ -1,5 +1,7 @@
 #include "donex/io/pose.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 namespace donex {
@@ -7,15 +9,20 @@ namespace {
 
 constexpr double kRounding = 1e-3;  // of a rotation matrix: files hold as few as four digits
 
-/// Dividing by the norm can move the last bit: do it until nothing moves.
-Eigen::Quaterniond stablyNormalised(Eigen::Quaterniond q) {
-  constexpr int kMostRounds = 8;
-  for (int i = 0; i < kMostRounds; ++i) {
-    const Eigen::Quaterniond next = q.normalized();
-    if (next.coeffs() == q.coeffs()) break;
-    q = next;
+/// Dividing by the norm may move last bits again and again: of the neighbours of the unit quaternion, a few last
+/// bits of its largest coefficient away, the nearest that normalising leaves as it is.
+Eigen::Quaterniond stablyNormalised(const Eigen::Quaterniond& q) {
+  constexpr int kMostSteps = 32;
+  const Eigen::Quaterniond unit = q.normalized();
+  Eigen::Index largest = 0;
+  const double size = unit.coeffs().cwiseAbs().maxCoeff(&largest);
+  const double step = std::nextafter(size, 2.0) - size;
+  for (int i = 0; i < kMostSteps; ++i) {
+    Eigen::Quaterniond candidate = unit;
+    candidate.coeffs()[largest] += step * (i % 2 == 0 ? i / 2 : -(i + 1) / 2);
+    if (candidate.normalized().coeffs() == candidate.coeffs()) return candidate;
   }
-  return q;
+  return unit;
 }
 
 }  // namespace
