@@ -1,0 +1,123 @@
+// A SemanticKITTI-layout sequence through the detector: labels, time and score.
+#include <chrono>
+#include <ctime>
+
+#include <fmt/format.h>
+
+#include "donex/core/detector.h"
+#include "donex/io/evaluation.h"
+#include "donex/io/sequence.h"
+#include "program.h"
+
+namespace donex {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::string sequence;
+  std::string out;
+  std::size_t frames = 0;  ///< 0: all
+};
+
+struct Run {
+  std::size_t echoes = 0;
+  std::size_t dynamic = 0;
+  std::vector<double> times;      ///< wall clock a scan [s]
+  std::vector<double> cpu_times;  ///< of all threads [s]
+  Evaluation evaluation;
+};
+
+double cpuTime() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+double wallTime() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+void judge(Detector& detector, const Scan& scan, EchoLabels& labels, Run& run) {
+  const double wall = wallTime();
+  const double cpu = cpuTime();
+  detector.process(scan, labels);
+  run.cpu_times.push_back(cpuTime() - cpu);
+  run.times.push_back(wallTime() - wall);
+}
+
+std::vector<std::uint32_t> asSemanticKitti(const EchoLabels& labels) {
+  std::vector<std::uint32_t> result(labels.dynamic.size(), kLabelStatic);
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    if (labels.dynamic[i] != 0) result[i] = kLabelMoving;
+  }
+  return result;
+}
+
+/// Creates the directory of the predictions, unless that would overwrite the ground truth.
+void prepareOutput(const Arguments& arguments) {
+  if (arguments.out.empty()) return;
+  const fs::path out = fs::weakly_canonical(arguments.out);
+  if (out == fs::weakly_canonical(fs::path(arguments.sequence) / "labels")) {
+    throw ArgumentError("--out " + arguments.out + " holds the ground truth, it would be overwritten");
+  }
+  std::error_code error;
+  fs::create_directories(out, error);
+  if (error) throw DataError(fmt::format("{}: cannot be created: {}", arguments.out, error.message()));
+}
+
+Run runSequence(const SequenceReader& sequence, std::size_t scans, Detector& detector, const std::string& out) {
+  Run run;
+  EchoLabels labels;
+  ProgressBar progress(scans);
+  for (std::size_t i = 0; i < scans; ++i) {
+    const Scan scan = toScan(sequence.scan(i));
+    judge(detector, scan, labels, run);
+    const auto prediction = asSemanticKitti(labels);
+    run.echoes += prediction.size();
+    run.dynamic += static_cast<std::size_t>(std::count(prediction.begin(), prediction.end(), kLabelMoving));
+    if (!out.empty()) writeLabels(fs::path(out) / (scanName(i) + ".label"), prediction);
+    if (sequence.hasLabels(i)) run.evaluation.add(i, scan.echoes, sequence.labels(i), prediction);
+    progress.advance();
+  }
+  return run;
+}
+
+void report(const Run& run, const Config& config, const Detector& detector, bool has_labels) {
+  double seconds = 0.0;
+  for (const double time : run.times) seconds += time;
+  fmt::print("{} scans, {} echoes, {} dynamic; {}, {} m\n", run.times.size(), run.echoes, run.dynamic,
+             namesOf(config.method).at(static_cast<std::size_t>(config.method)), config.voxel_size);
+  fmt::print("time a scan: median {:.2f} ms, p99 {:.2f} ms (CPU: median {:.2f} ms)\n", 1e3 * quantile(run.times, 0.5),
+             1e3 * quantile(run.times, 0.99), 1e3 * quantile(run.cpu_times, 0.5));
+  fmt::print("echoes a second: {:.1f} million\n", 1e-6 * static_cast<double>(run.echoes) / seconds);
+  fmt::print("peak memory: {}, of it the grid's {}\n", megabytes(peakMemory()), megabytes(detector.memoryBytes()));
+  if (run.evaluation.scans() > 0) {
+    fmt::print("\n{}", formatEvaluations({{"this run", &run.evaluation}}));
+  } else {
+    fmt::print("not scored: {}\n", has_labels ? "no labelled scan after the warm-up" : "the sequence has no labels");
+  }
+}
+
+void run(const CLI::App& app, const Arguments& arguments, const ConfigOptions& options) {
+  const Config config = options.config();
+  const SequenceReader sequence(arguments.sequence);
+  for (const std::string& note : sequence.notes()) warn(app, note);
+  prepareOutput(arguments);
+  const std::size_t scans = arguments.frames == 0 ? sequence.size() : std::min(arguments.frames, sequence.size());
+  const auto detector = makeDetector(config);
+  report(runSequence(sequence, scans, *detector, arguments.out), config, *detector, sequence.hasLabels());
+}
+
+}  // namespace
+}  // namespace donex
+
+int main(int argc, char** argv) {
+  CLI::App app("Labels the echoes of a sequence (SemanticKITTI layout) dynamic or static.", "donex_sequence");
+  donex::Arguments arguments;
+  app.add_option("SEQ_DIR", arguments.sequence, "velodyne/NNNNNN.bin, poses.txt, times.txt, labels/")->required();
+  app.add_option("--out", arguments.out, "directory for NNNNNN.label (251 moving, 9 static); without it only figures");
+  app.add_option("--frames", arguments.frames, "only the first N scans")->check(CLI::PositiveNumber);
+  const donex::ConfigOptions options(app);
+  return donex::runProgram(app, argc, argv, [&] { donex::run(app, arguments, options); });
+}

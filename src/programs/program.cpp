@@ -1,0 +1,113 @@
+#include "program.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "donex/io/config_file.h"
+
+namespace donex {
+namespace {
+
+constexpr int kDone = 0;
+constexpr int kFailedOnData = 1;
+constexpr int kWrongArguments = 2;
+
+int parseArguments(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+    return kDone;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kWrongArguments;
+  }
+}
+
+int runBody(const CLI::App& app, const std::function<void()>& body) {
+  try {
+    body();
+    return kDone;
+  } catch (const SettingError& error) {
+    warn(app, error.what());
+    return kWrongArguments;
+  } catch (const ArgumentError& error) {
+    warn(app, error.what());
+    return kWrongArguments;
+  } catch (const std::exception& error) {
+    warn(app, error.what());
+    return kFailedOnData;
+  }
+}
+
+}  // namespace
+
+int runProgram(CLI::App& app, int argc, char** argv, const std::function<void()>& body) {
+  // CLI11 calls this only when the arguments are sound, so that --help is not followed by a run.
+  int result = kDone;
+  app.callback([&] { result = runBody(app, body); });
+  const int parsed = parseArguments(app, argc, argv);
+  return parsed == kDone ? result : parsed;
+}
+
+void warn(const CLI::App& app, const std::string& text) {
+  fmt::print(stderr, "{}: {}\n", app.get_name(), text);
+}
+
+ConfigOptions::ConfigOptions(CLI::App& app) {
+  app.add_option("--config", file_, "a file of parameters, as the node reads it");
+  app.add_option("--method", method_, "the classifier, over --config");
+  app.add_option("--voxel-size", voxel_size_, "edge length of a voxel [m], over --config");
+  app.add_option("--set", settings_, "name=value: any parameter, over all others; may be repeated")
+      ->type_size(1)
+      ->expected(-1);
+}
+
+Config ConfigOptions::config() const {
+  Config config = file_.empty() ? Config() : readConfigFile(file_);
+  std::vector<std::string> settings;
+  if (!method_.empty()) settings.push_back("method=" + method_);
+  if (!voxel_size_.empty()) settings.push_back("voxel_size=" + voxel_size_);
+  settings.insert(settings.end(), settings_.begin(), settings_.end());
+  applySettings(config, settings);
+  return config;
+}
+
+ProgressBar::ProgressBar(std::size_t total) : total_(total), on_terminal_(isatty(STDERR_FILENO) == 1) {}
+
+ProgressBar::~ProgressBar() {
+  if (on_terminal_ && done_ > 0) std::fputs("\r\033[K", stderr);
+}
+
+void ProgressBar::advance() {
+  ++done_;
+  constexpr std::size_t kWidth = 40;
+  const std::size_t shown = std::min(done_, total_);
+  const int percent = total_ == 0 ? 100 : static_cast<int>(100 * shown / total_);
+  if (!on_terminal_ || percent == drawn_percent_) return;
+  drawn_percent_ = percent;
+  const std::size_t filled = kWidth * static_cast<std::size_t>(percent) / 100;
+  fmt::print(stderr, "\r[{}{}] {:3d} %  {} of {}", std::string(filled, '='), std::string(kWidth - filled, ' '), percent,
+             shown, total_);
+  std::fflush(stderr);
+}
+
+double quantile(std::vector<double> values, double fraction) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  const double rank = std::ceil(fraction * static_cast<double>(values.size()));
+  return values[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
+}
+
+std::size_t peakMemory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024U;
+}
+
+std::string megabytes(std::size_t bytes) { return fmt::format("{:.1f} MB", static_cast<double>(bytes) / 1e6); }
+
+}  // namespace donex

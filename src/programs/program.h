@@ -1,0 +1,69 @@
+// What all programs share: exit codes, messages, progress, figures.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "donex/core/config.h"
+
+namespace donex {
+
+/// Arguments that are well-formed but cannot be meant.
+class ArgumentError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Parses the arguments and runs `body`. The exit code: 0 done, 1 failed on the data, 2 wrong arguments. Every error
+/// goes to stderr after the program's name.
+int runProgram(CLI::App& app, int argc, char** argv, const std::function<void()>& body);
+
+/// A line on stderr after the program's name, for what a user should know and need not stop for.
+void warn(const CLI::App& app, const std::string& text);
+
+/// The options --config, --method, --voxel-size and --set; the later of these wins over the earlier.
+class ConfigOptions {
+ public:
+  explicit ConfigOptions(CLI::App& app);
+
+  /// Throws DataError for the file, SettingError for the other options.
+  Config config() const;
+
+ private:
+  std::string file_;
+  std::string method_;
+  std::string voxel_size_;
+  std::vector<std::string> settings_;
+};
+
+/// A bar on stderr; says nothing where that is no terminal.
+class ProgressBar {
+ public:
+  explicit ProgressBar(std::size_t total);
+  ~ProgressBar();
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  void advance();
+
+ private:
+  std::size_t total_;
+  std::size_t done_ = 0;
+  int drawn_percent_ = -1;
+  bool on_terminal_;
+};
+
+/// The value below which `fraction` of the values lie (nearest rank); 0 without values.
+double quantile(std::vector<double> values, double fraction);
+
+/// The most memory the process ever had resident [bytes].
+std::size_t peakMemory();
+
+/// "12.3 MB".
+std::string megabytes(std::size_t bytes);
+
+}  // namespace donex
