@@ -1,46 +1,11 @@
-# What the ROS layer takes from catkin.
-set(DONEX_CATKIN_PACKAGES
-  diagnostic_msgs
-  diagnostic_updater
-  dynamic_reconfigure
-  geometry_msgs
-  nav_msgs
-  nodelet
-  pluginlib
-  rosbag
-  roscpp
-  sensor_msgs
-  std_msgs
-  std_srvs
-  tf2
-  tf2_eigen
-  tf2_ros
-  visualization_msgs)
-find_package(catkin REQUIRED COMPONENTS ${DONEX_CATKIN_PACKAGES})
+# What the ROS layer takes from catkin, beside the list of packages in the top-level CMakeLists.txt.
 
-file(GLOB donex_cfg CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cfg/*.cfg)
-generate_dynamic_reconfigure_options(${donex_cfg})
-
-find_package(Eigen3 REQUIRED NO_MODULE)
-get_target_property(EIGEN3_INCLUDE_DIRS Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
-
-catkin_package(
-  INCLUDE_DIRS include
-  LIBRARIES donex_ros donex_io donex_simulation donex_core
-  CATKIN_DEPENDS ${DONEX_CATKIN_PACKAGES}
-  DEPENDS EIGEN3)
-
-# donex_catkin: link this to use the packages above. Their headers are SYSTEM: our warnings are for our code.
+# donex_catkin: link this to use those packages. Their headers are SYSTEM: our warnings are for our code.
 add_library(donex_catkin INTERFACE)
-target_include_directories(donex_catkin SYSTEM INTERFACE
-  ${CATKIN_DEVEL_PREFIX}/${CATKIN_GLOBAL_INCLUDE_DESTINATION}
-  ${catkin_INCLUDE_DIRS})
+target_include_directories(donex_catkin SYSTEM INTERFACE ${catkin_INCLUDE_DIRS})
 target_link_libraries(donex_catkin INTERFACE ${catkin_LIBRARIES})
 if(TARGET pluginlib::pluginlib)
   target_link_libraries(donex_catkin INTERFACE pluginlib::pluginlib)
-endif()
-if(TARGET ${PROJECT_NAME}_gencfg)
-  add_dependencies(donex_catkin ${PROJECT_NAME}_gencfg)
 endif()
 
 if(NOT CATKIN_ENABLE_TESTING)

@@ -1,0 +1,47 @@
+# Sourced by the scripts beside it: where things are, and an environment in which ROS 1 works.
+
+repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
+build=$repository/build
+workspace=$build/workspace
+
+# Another python3 (pyenv, conda) earlier in PATH has none of ROS's modules.
+export PATH=/usr/bin:$PATH
+unset PYTHONPATH PYTHONHOME
+# A workspace that happens to be sourced must not supply an older donex.
+unset CMAKE_PREFIX_PATH ROS_PACKAGE_PATH
+
+if [ -f /opt/ros/noetic/setup.bash ]; then
+  set +u
+  source /opt/ros/noetic/setup.bash
+  set -u
+fi
+
+# Logs and caches stay in the build folder, too.
+export ROS_HOME=$build/ros_home
+export CCACHE_DIR=$build/ccache CCACHE_NOHASHDIR=1 CCACHE_BASEDIR=$repository CCACHE_MAXSIZE=1G
+# A node's messages as they come, not when a buffer is full.
+export ROSCONSOLE_STDOUT_LINE_BUFFERED=1 PYTHONUNBUFFERED=1
+
+cmake_arguments=(
+  -DCMAKE_CXX_COMPILER_LAUNCHER=ccache
+  -DPYTHON_EXECUTABLE=/usr/bin/python3
+  -DPython3_EXECUTABLE=/usr/bin/python3)
+
+say() { printf '\n== %s\n' "$*"; }
+
+fail() {
+  printf '%s: %s\n' "$(basename "$0")" "$*" >&2
+  exit 1
+}
+
+# A catkin workspace of its own, wherever the checkout lies.
+make_workspace() {
+  mkdir -p "$workspace/src"
+  ln -sfn "$repository" "$workspace/src/donex"
+}
+
+source_setup() {
+  set +u
+  source "$1"
+  set -u
+}
