@@ -19,12 +19,15 @@ class Diagnostics {
 
   Diagnostics(const ros::NodeHandle& nh, const ros::NodeHandle& pnh, const Pipeline& pipeline);
 
-  void cloudArrived() { arrivals_.push_back(Clock::now()); }
-  void odometryArrived() { odometry_arrivals_.push_back(Clock::now()); }
+  void cloudArrived();
+  void odometryArrived();
   void scanPublished(const LabeledScan& scan);
   void dropped(const std::string& text) { last_drop_ = text; }
   void refused(const std::string& text) { last_refusal_ = text; }
-  void failed(const std::string& text) { last_failure_ = text; }
+  void failed(const std::string& text) {
+    ++failures_;
+    last_failure_ = text;
+  }
 
   /// Publishes; called about once a second.
   void publish() { updater_.force_update(); }
@@ -36,6 +39,9 @@ class Diagnostics {
   };
   using Times = std::deque<Clock::time_point>;
 
+  double publishedRate() const;     // [Hz]
+  double medianProcessing() const;  // [s]
+
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
   void summarise(diagnostic_updater::DiagnosticStatusWrapper& status) const;
   void addFigures(diagnostic_updater::DiagnosticStatusWrapper& status) const;
@@ -45,7 +51,7 @@ class Diagnostics {
   diagnostic_updater::Updater updater_;
   Times arrivals_, odometry_arrivals_;  // of the last seconds
   std::deque<Figures> published_;       // of the last seconds
-  std::size_t drops_reported_ = 0;
+  std::size_t drops_reported_ = 0, failures_ = 0, failures_reported_ = 0;
   std::string last_drop_, last_refusal_, last_failure_;
 };
 

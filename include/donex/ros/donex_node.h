@@ -18,7 +18,7 @@ class DonexNode {
 
  private:
   class Implementation;
-  std::shared_ptr<Implementation> implementation_;
+  std::unique_ptr<Implementation> implementation_;
 };
 
 }  // namespace donex

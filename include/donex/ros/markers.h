@@ -2,8 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include <ros/time.h>
 #include <visualization_msgs/MarkerArray.h>
@@ -15,7 +16,7 @@ namespace donex {
 /// Makes marker arrays of which every one replaces the one before: whatever is gone or switched off is deleted.
 class MarkerMaker {
  public:
-  /// The markers of the detector's last scan, in the odometry frame.
+  /// The markers of the detector's last scan that are switched on, in the odometry frame.
   visualization_msgs::MarkerArrayPtr make(const Detector& detector, const Config& config, const ros::Time& stamp,
                                           const std::string& odom_frame);
 
@@ -23,13 +24,10 @@ class MarkerMaker {
   visualization_msgs::MarkerArrayPtr clear();
 
  private:
-  struct Shown {
-    std::string name_space;
-    std::int32_t id;
-  };
+  using Key = std::pair<std::string, std::int32_t>;  // namespace, id
   void deleteGone(visualization_msgs::MarkerArray& array);
 
-  std::vector<Shown> shown_;
+  std::set<Key> shown_;
   std_msgs::Header header_;  // of what is shown
 };
 

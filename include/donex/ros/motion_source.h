@@ -1,9 +1,9 @@
 // Where vehicle and sensor were during a scan: odometry messages or tf, and the mounting from tf.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
-#include <vector>
 
 #include <nav_msgs/Odometry.h>
 #include <ros/time.h>
@@ -32,6 +32,8 @@ struct OdometryVerdict {
 struct ScanTimes {
   ros::Time stamp;
   double first = 0.0, last = 0.0;  ///< echoes' times after the stamp [s]; both zero without de-skewing
+
+  bool spanTime() const { return last > first; }
 };
 
 /// The motion of one scan.
@@ -39,7 +41,8 @@ struct ScanMotion {
   Eigen::Isometry3d base_from_sensor = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d odom_from_base = Eigen::Isometry3d::Identity();  ///< at the stamp
   std::string odom_frame;
-  EgoMotion during_scan;  ///< covers the scan's times; empty when there is nothing to de-skew by
+  /// Covers the scan's times, to de-skew by; null where there is nothing to undo. Valid until the source's next call.
+  const EgoMotion* track = nullptr;
 };
 
 /// Why there is no motion (yet).
@@ -61,13 +64,15 @@ class MotionSource {
 
   /// The motion of a scan measured in `sensor_frame`. With `settle` the newest odometry may be extrapolated
   /// as far as configured; without, it has to cover the scan: what comes does not depend on when one asks.
-  MotionAnswer during(const ScanTimes& times, const std::string& sensor_frame, bool settle) const;
+  MotionAnswer during(const ScanTimes& times, const std::string& sensor_frame, bool settle);
 
   void reset();
 
  private:
   MotionAnswer fromOdometry(const ScanTimes& times, const std::string& sensor_frame, bool settle) const;
-  MotionAnswer fromTf(const ScanTimes& times, const std::string& sensor_frame) const;
+  MotionAnswer fromTf(const ScanTimes& times, const std::string& sensor_frame);
+  std::optional<MotionMissing> trackFromTf(const ScanTimes& times);
+  OdometryVerdict addSample(const nav_msgs::Odometry& odometry, const OdometrySample& sample);
   std::variant<Eigen::Isometry3d, MotionMissing> lookup(const std::string& target, const std::string& source,
                                                         const ros::Time& stamp) const;
   bool adoptFrames(const nav_msgs::Odometry& odometry);
@@ -75,6 +80,7 @@ class MotionSource {
   MotionConfig config_;
   const tf2::BufferCore& tf_;
   EgoMotion odometry_;
+  EgoMotion tf_track_;  // of one scan
   std::string odom_frame_, base_frame_;  // of the odometry in use; empty before the first
 };
 

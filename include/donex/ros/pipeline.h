@@ -34,9 +34,10 @@ struct LabeledScan {
 /// What the pipeline tells its owner; every function must be set.
 struct PipelineEvents {
   std::function<void(const LabeledScan&)> labeled;
-  std::function<void(DropReason, const std::string& text)> dropped;             ///< once a dropped cloud
-  std::function<void(OdometryRefusal, const std::string& text)> refused;        ///< once a refused odometry
-  std::function<void(const std::string& text)> notice;                          ///< grid forgotten, and why
+  std::function<void(DropReason, const std::string& text)> dropped;       ///< once a dropped cloud
+  std::function<void(OdometryRefusal, const std::string& text)> refused;  ///< once a refused odometry
+  std::function<void(const std::string& text)> forgotten;                 ///< the grid is empty again, and why
+  std::function<void(const std::string& text)> strange_times;             ///< once a cloud that cannot be de-skewed
 };
 
 struct PipelineCounts {
@@ -55,7 +56,7 @@ class Pipeline {
   Pipeline(const Config& config, const tf2::BufferCore& tf, PipelineEvents events);
 
   void addCloud(const sensor_msgs::PointCloud2ConstPtr& cloud, double now);
-  void addOdometry(const nav_msgs::Odometry& odometry, double now);
+  void addOdometry(const nav_msgs::Odometry& odometry);
 
   /// Labels or drops the oldest waiting cloud when its time has come; false when there was nothing to do.
   bool step(double now);
@@ -85,13 +86,13 @@ class Pipeline {
   };
 
   void place(WaitingCloud cloud);
+  void suspect(WaitingCloud cloud);
+  void suspect(const nav_msgs::Odometry& odometry);
+  void use(const nav_msgs::Odometry& odometry);
+  void startAnew(const std::string& why);
   void label(const WaitingCloud& waiting, const ScanMotion& motion);
+  void refuse(OdometryRefusal refusal, const std::string& text);
   void drop(DropReason reason, const std::string& text);
-  void use(const nav_msgs::Odometry& odometry, double now);
-  bool isOlderThanLabeled(const ros::Time& stamp) const;
-  void suspectCloud(WaitingCloud cloud, double now);
-  void clearSuspects();
-  void startAnew(const std::string& why, double now);
 
   Config config_;
   PipelineEvents events_;

@@ -1,0 +1,29 @@
+// config/default.yaml and cfg/Donex.cfg are written from the code: the one place of names, defaults and ranges.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "donex/core/config.h"
+
+namespace donex {
+
+/// Level bits of dynamic_reconfigure: what a change of a parameter means.
+enum ReconfigureLevel : std::uint32_t {
+  kRebuildsGrid = 1,  ///< the grid starts anew, empty
+  kSwitch = 2,        ///< outputs only
+};
+
+/// The group in which a parameter is shown; `value` is a member of `config`.
+std::string groupOf(const Config& config, const void* value);
+
+/// What a change of the parameter means; `value` is a member of `config`.
+ReconfigureLevel levelOf(const Config& config, const void* value);
+
+/// Every parameter with its default, unit, range and meaning, as rosparam reads it.
+std::string defaultYaml();
+
+/// The reconfigurable parameters as dynamic_reconfigure's generator reads them.
+std::string reconfigureCfg();
+
+}  // namespace donex

@@ -1,0 +1,16 @@
+// The classifier as a plain node.
+#include <ros/ros.h>
+
+#include "donex/ros/donex_node.h"
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "donex");
+  try {
+    const donex::DonexNode node(ros::NodeHandle(), ros::NodeHandle("~"));
+    ros::spin();
+  } catch (const std::exception& error) {
+    ROS_FATAL("%s", error.what());
+    return 1;
+  }
+  return 0;
+}

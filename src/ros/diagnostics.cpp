@@ -1,0 +1,140 @@
+#include "donex/ros/diagnostics.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+
+namespace donex {
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+using diagnostic_updater::DiagnosticStatusWrapper;
+using Clock = Diagnostics::Clock;
+
+constexpr std::chrono::seconds kWindow{5};  // what "now" means in rates and times
+
+double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
+
+/// Arrivals a second over the window.
+double rateOf(const std::deque<Clock::time_point>& times) {
+  if (times.size() < 2) return 0.0;
+  const double span = seconds(times.back() - times.front());
+  return span > 0.0 ? static_cast<double>(times.size() - 1) / span : 0.0;
+}
+
+template <class Entries, class TimeOf>
+void forgetOld(Entries& entries, TimeOf timeOf) {
+  const Clock::time_point horizon = Clock::now() - kWindow;
+  while (!entries.empty() && timeOf(entries.front()) < horizon) entries.pop_front();
+}
+
+double percentile(std::vector<double> values, double fraction) {
+  if (values.empty()) return 0.0;
+  const auto rank = static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1) + 0.5);
+  std::nth_element(values.begin(), values.begin() + rank, values.end());
+  return values[static_cast<std::size_t>(rank)];
+}
+
+double residentMegabytes() {
+  std::ifstream statm("/proc/self/statm");
+  double total = 0.0, resident = 0.0;
+  statm >> total >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
+}
+
+}  // namespace
+
+Diagnostics::Diagnostics(const ros::NodeHandle& nh, const ros::NodeHandle& pnh, const Pipeline& pipeline)
+    : pipeline_(pipeline), updater_(nh, pnh, pnh.getNamespace()) {
+  updater_.setHardwareID("none");
+  updater_.add("classifier", this, &Diagnostics::report);
+}
+
+void Diagnostics::cloudArrived() { arrivals_.push_back(Clock::now()); }
+
+void Diagnostics::odometryArrived() { odometry_arrivals_.push_back(Clock::now()); }
+
+void Diagnostics::scanPublished(const LabeledScan& scan) {
+  const auto now = Clock::now();
+  published_.push_back({now, scan.processing_time, seconds(now - scan.received)});
+}
+
+void Diagnostics::report(DiagnosticStatusWrapper& status) {
+  const auto itself = [](const Clock::time_point& time) { return time; };
+  forgetOld(arrivals_, itself);
+  forgetOld(odometry_arrivals_, itself);
+  forgetOld(published_, [](const Figures& figures) { return figures.published; });
+  summarise(status);
+  addFigures(status);
+  addCounts(status);
+  drops_reported_ = pipeline_.counts().dropped.total();
+  failures_reported_ = failures_;
+}
+
+void Diagnostics::summarise(DiagnosticStatusWrapper& status) const {
+  const std::size_t new_drops = pipeline_.counts().dropped.total() - drops_reported_;
+  if (failures_ != failures_reported_) {
+    status.summaryf(DiagnosticStatus::ERROR, "%s", last_failure_.c_str());
+  } else if (new_drops != 0) {
+    status.summaryf(DiagnosticStatus::WARN, "%zu scans dropped, the last one: %s", new_drops, last_drop_.c_str());
+  } else if (arrivals_.empty()) {
+    status.summary(DiagnosticStatus::WARN, "no clouds");
+  } else if (published_.empty()) {
+    status.summaryf(DiagnosticStatus::WARN, "clouds come, none is labelled yet, %zu wait", pipeline_.waiting());
+  } else {
+    status.summaryf(DiagnosticStatus::OK, "%.1f Hz, %.0f ms a scan", publishedRate(), 1e3 * medianProcessing());
+  }
+}
+
+double Diagnostics::publishedRate() const {
+  Times times;
+  for (const Figures& figures : published_) times.push_back(figures.published);
+  return rateOf(times);
+}
+
+double Diagnostics::medianProcessing() const {
+  std::vector<double> values;
+  for (const Figures& figures : published_) values.push_back(figures.processing);
+  return percentile(values, 0.5);
+}
+
+void Diagnostics::addFigures(DiagnosticStatusWrapper& status) const {
+  std::vector<double> processing, latency;
+  for (const Figures& figures : published_) {
+    processing.push_back(figures.processing);
+    latency.push_back(figures.latency);
+  }
+  status.addf("clouds in [Hz]", "%.2f", rateOf(arrivals_));
+  status.addf("clouds labelled [Hz]", "%.2f", publishedRate());
+  status.addf("odometry in [Hz]", "%.2f", rateOf(odometry_arrivals_));
+  status.addf("time a scan, median [ms]", "%.2f", 1e3 * percentile(processing, 0.5));
+  status.addf("time a scan, p99 [ms]", "%.2f", 1e3 * percentile(processing, 0.99));
+  status.addf("latency in to out, median [ms]", "%.2f", 1e3 * percentile(latency, 0.5));
+  status.addf("latency in to out, p99 [ms]", "%.2f", 1e3 * percentile(latency, 0.99));
+  status.addf("memory of the grid [MB]", "%.1f", static_cast<double>(pipeline_.detector().memoryBytes()) / 1e6);
+  status.addf("memory of the process [MB]", "%.1f", residentMegabytes());
+}
+
+void Diagnostics::addCounts(DiagnosticStatusWrapper& status) const {
+  const PipelineCounts& counts = pipeline_.counts();
+  status.add("clouds in", counts.clouds_in);
+  status.add("clouds labelled", counts.clouds_labeled);
+  status.add("clouds waiting", pipeline_.waiting());
+  status.add("clouds dropped", counts.dropped.total());
+  for (std::size_t i = 0; i < kDropReasons; ++i) {
+    const auto reason = static_cast<DropReason>(i);
+    status.add(std::string("dropped: ") + describe(reason), counts.dropped.of(reason));
+  }
+  status.add("odometry in", counts.odometry_in);
+  for (std::size_t i = 0; i < kOdometryRefusals; ++i) {
+    const auto refusal = static_cast<OdometryRefusal>(i);
+    status.add(std::string("odometry refused: ") + describe(refusal), counts.refused.of(refusal));
+  }
+  status.add("last drop", last_drop_);
+  status.add("last odometry refused", last_refusal_);
+  status.add("internal errors", failures_);
+  status.add("last internal error", last_failure_);
+}
+
+}  // namespace donex

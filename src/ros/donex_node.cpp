@@ -1,0 +1,211 @@
+#include "donex/ros/donex_node.h"
+
+#include <memory>
+#include <string>
+
+#include <ros/callback_queue_interface.h>
+#include <ros/ros.h>
+#include <std_srvs/Trigger.h>
+#include <tf2_ros/buffer.h>
+#include <tf2_ros/transform_listener.h>
+
+#include "donex/ros/diagnostics.h"
+#include "donex/ros/markers.h"
+#include "donex/ros/parameters.h"
+#include "donex/ros/pipeline.h"
+#include "donex/ros/reconfigure.h"
+
+namespace donex {
+namespace {
+
+constexpr double kLogPeriod = 5.0;            // between messages of one kind [s]
+constexpr double kRetryPeriod = 0.01;         // waiting clouds are asked about this often at least [s]
+constexpr std::uint32_t kCloudQueue = 100;    // what comes while one scan is judged; the pipeline bounds and counts
+constexpr std::uint32_t kOdometryQueue = 1000;
+
+using sensor_msgs::PointCloud2;
+
+/// A call to a function as an entry of a callback queue.
+class QueuedCall : public ros::CallbackInterface {
+ public:
+  explicit QueuedCall(std::function<void()> function) : function_(std::move(function)) {}
+  CallResult call() override {
+    function_();
+    return Success;
+  }
+
+ private:
+  std::function<void()> function_;
+};
+
+}  // namespace
+
+class DonexNode::Implementation {
+ public:
+  Implementation(const ros::NodeHandle& nh, const ros::NodeHandle& pnh);
+  ~Implementation();
+
+ private:
+  void onCloud(const sensor_msgs::PointCloud2ConstPtr& cloud);
+  void onOdometry(const nav_msgs::OdometryConstPtr& odometry);
+  bool onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response);
+  void onChange(const Config& config);
+
+  PipelineEvents events();
+  void publish(const LabeledScan& scan);
+  void publishMarkers(const LabeledScan& scan);
+
+  /// A throw out of a callback would end the whole manager.
+  template <class Function>
+  void guarded(const char* where, Function&& function);
+  void schedule();
+  void work();
+  std::uint64_t queueId() const { return reinterpret_cast<std::uint64_t>(this); }
+
+  ros::NodeHandle nh_, pnh_;
+  Config config_;
+  tf2_ros::Buffer tf_;
+  std::unique_ptr<tf2_ros::TransformListener> tf_listener_;
+  Pipeline pipeline_;
+  Diagnostics diagnostics_;
+  MarkerMaker markers_;
+  std::unique_ptr<Reconfigure> reconfigure_;
+  bool work_is_queued_ = false;
+
+  ros::Publisher labeled_publisher_, dynamic_publisher_, static_publisher_, marker_publisher_;
+  ros::ServiceServer reset_service_;
+  ros::Subscriber cloud_subscriber_, odometry_subscriber_;
+  ros::WallTimer retry_timer_, diagnostics_timer_;
+};
+
+DonexNode::Implementation::Implementation(const ros::NodeHandle& nh, const ros::NodeHandle& pnh)
+    : nh_(nh), pnh_(pnh), config_(readParameters(pnh)), pipeline_(config_, tf_, events()), diagnostics_(nh, pnh, pipeline_) {
+  // A sensor at rest asks tf nothing.
+  const bool needs_tf = config_.motion.source != OdometrySource::kNone;
+  if (needs_tf) tf_listener_ = std::make_unique<tf2_ros::TransformListener>(tf_, nh_);
+
+  labeled_publisher_ = pnh_.advertise<PointCloud2>("labeled_points", 5);
+  dynamic_publisher_ = pnh_.advertise<PointCloud2>("dynamic_points", 5);
+  static_publisher_ = pnh_.advertise<PointCloud2>("static_points", 5);
+  marker_publisher_ = pnh_.advertise<visualization_msgs::MarkerArray>("markers", 5);
+  reset_service_ = pnh_.advertiseService("reset", &Implementation::onReset, this);
+  reconfigure_ = std::make_unique<Reconfigure>(pnh_, config_, [this](const Config& config) { onChange(config); });
+
+  const auto hints = ros::TransportHints().tcpNoDelay();
+  cloud_subscriber_ = nh_.subscribe("points", kCloudQueue, &Implementation::onCloud, this, hints);
+  odometry_subscriber_ = nh_.subscribe("odom", kOdometryQueue, &Implementation::onOdometry, this, hints);
+  retry_timer_ = nh_.createWallTimer(ros::WallDuration(kRetryPeriod), [this](const ros::WallTimerEvent&) {
+    if (pipeline_.waiting() != 0) schedule();
+  });
+  diagnostics_timer_ = nh_.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) {
+    guarded("diagnostics", [this] { diagnostics_.publish(); });
+  });
+}
+
+DonexNode::Implementation::~Implementation() {
+  retry_timer_.stop();
+  diagnostics_timer_.stop();
+  cloud_subscriber_.shutdown();
+  odometry_subscriber_.shutdown();
+  reset_service_.shutdown();
+  reconfigure_.reset();
+  nh_.getCallbackQueue()->removeByID(queueId());
+}
+
+template <class Function>
+void DonexNode::Implementation::guarded(const char* where, Function&& function) {
+  try {
+    function();
+  } catch (const std::exception& error) {
+    const std::string text = std::string(where) + ": " + error.what();
+    ROS_ERROR_STREAM_THROTTLE_NAMED(kLogPeriod, "donex", text);
+    diagnostics_.failed(text);
+  }
+}
+
+void DonexNode::Implementation::onCloud(const sensor_msgs::PointCloud2ConstPtr& cloud) {
+  guarded("cloud", [&] {
+    diagnostics_.cloudArrived();
+    pipeline_.addCloud(cloud, ros::Time::now().toSec());
+    schedule();
+  });
+}
+
+void DonexNode::Implementation::onOdometry(const nav_msgs::OdometryConstPtr& odometry) {
+  guarded("odometry", [&] {
+    diagnostics_.odometryArrived();
+    pipeline_.addOdometry(*odometry);
+    if (pipeline_.waiting() != 0) schedule();
+  });
+}
+
+bool DonexNode::Implementation::onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  guarded("reset", [&] {
+    pipeline_.reset();
+    if (marker_publisher_.getNumSubscribers() != 0) marker_publisher_.publish(markers_.clear());
+    response.success = true;
+    response.message = "the grid is forgotten";
+  });
+  return true;
+}
+
+void DonexNode::Implementation::onChange(const Config& config) {
+  pipeline_.configure(config);
+  config_ = config;
+}
+
+void DonexNode::Implementation::schedule() {
+  if (work_is_queued_) return;
+  work_is_queued_ = true;
+  // Behind whatever has arrived: messages are taken in first, so that the pipeline can see (and count) an overload.
+  nh_.getCallbackQueue()->addCallback(boost::make_shared<QueuedCall>([this] { work(); }), queueId());
+}
+
+void DonexNode::Implementation::work() {
+  work_is_queued_ = false;
+  guarded("labelling", [this] {
+    if (pipeline_.step(ros::Time::now().toSec()) && pipeline_.waiting() != 0) schedule();
+  });
+}
+
+PipelineEvents DonexNode::Implementation::events() {
+  PipelineEvents events;
+  events.labeled = [this](const LabeledScan& scan) { publish(scan); };
+  events.dropped = [this](DropReason reason, const std::string& text) {
+    const std::string full = std::string(describe(reason)) + ": " + text;
+    ROS_WARN_STREAM_THROTTLE_NAMED(kLogPeriod, "donex", "cloud dropped, " << full);
+    diagnostics_.dropped(full);
+  };
+  events.refused = [this](OdometryRefusal refusal, const std::string& text) {
+    const std::string full = std::string(describe(refusal)) + ": " + text;
+    ROS_WARN_STREAM_THROTTLE_NAMED(kLogPeriod, "donex", "odometry refused, " << full);
+    diagnostics_.refused(full);
+  };
+  events.forgotten = [](const std::string& text) { ROS_WARN_STREAM_NAMED("donex", text); };
+  events.strange_times = [](const std::string& text) { ROS_WARN_STREAM_THROTTLE_NAMED(kLogPeriod, "donex", text); };
+  return events;
+}
+
+void DonexNode::Implementation::publish(const LabeledScan& scan) {
+  labeled_publisher_.publish(labelCloud(*scan.cloud, scan.layout, scan.labels));
+  diagnostics_.scanPublished(scan);
+  if (dynamic_publisher_.getNumSubscribers() != 0) {
+    dynamic_publisher_.publish(selectPart(*scan.cloud, scan.layout, scan.labels, CloudPart::kDynamic));
+  }
+  if (static_publisher_.getNumSubscribers() != 0) {
+    static_publisher_.publish(selectPart(*scan.cloud, scan.layout, scan.labels, CloudPart::kStatic));
+  }
+  if (marker_publisher_.getNumSubscribers() != 0) publishMarkers(scan);
+}
+
+void DonexNode::Implementation::publishMarkers(const LabeledScan& scan) {
+  const auto array = markers_.make(scan.detector, config_, scan.cloud->header.stamp, scan.odom_frame);
+  if (!array->markers.empty()) marker_publisher_.publish(array);
+}
+
+DonexNode::DonexNode(const ros::NodeHandle& nh, const ros::NodeHandle& pnh)
+    : implementation_(std::make_unique<Implementation>(nh, pnh)) {}
+
+DonexNode::~DonexNode() = default;
+
+}  // namespace donex

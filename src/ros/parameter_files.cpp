@@ -1,0 +1,168 @@
+#include "donex/ros/parameter_files.h"
+
+#include <algorithm>
+#include <functional>
+#include <list>
+#include <sstream>
+#include <type_traits>
+#include <utility>
+
+namespace donex {
+namespace {
+
+template <class Part>
+bool isWithin(const Part& part, const void* value) {
+  const auto* begin = reinterpret_cast<const char*>(&part);
+  const auto* at = static_cast<const char*>(value);
+  const std::less<> less;
+  return !less(at, begin) && less(at, begin + sizeof part);
+}
+
+/// Shortest decimal form that reads back as the same number, always with a point: YAML and Python see a float.
+std::string textOf(double value) {
+  std::string text;
+  for (int precision = 6; precision <= 17; ++precision) {
+    std::ostringstream out;
+    out.precision(precision);
+    out << value;
+    text = out.str();
+    if (std::stod(text) == value) break;
+  }
+  const bool has_point = text.find('.') != std::string::npos;
+  return has_point ? text : text.insert(std::min(text.find('e'), text.size()), ".0");
+}
+std::string textOf(int value) { return std::to_string(value); }
+
+template <class Enum>
+const std::string& nameOf(Enum value) {
+  return namesOf(value)[static_cast<std::size_t>(value)];
+}
+
+std::string quoted(const std::string& text) { return '"' + text + '"'; }
+
+template <class Enum>
+std::string alternatives(Enum value) {
+  std::string text;
+  for (const std::string& name : namesOf(value)) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+/// Text by group, the groups in the order in which they first appear.
+class GroupedText {
+ public:
+  std::ostream& in(const std::string& group) {
+    for (auto& [name, text] : groups_) {
+      if (name == group) return text;
+    }
+    return groups_.emplace_back(group, std::ostringstream()).second;
+  }
+  std::string text(const std::string& before_title, const std::string& after_title) const {
+    std::string all;
+    for (const auto& [name, text] : groups_) all += "\n" + before_title + name + after_title + "\n" + text.str();
+    return all;
+  }
+
+ private:
+  std::list<std::pair<std::string, std::ostringstream>> groups_;
+};
+
+struct YamlWriter {
+  const Config& config;
+  GroupedText& out;
+
+  template <class Number>
+  void operator()(const ParameterInfo& info, const Number& value, Number min, Number max) {
+    const std::string unit = *info.unit == '\0' ? "" : std::string(" ") + info.unit;
+    write(info, &value, textOf(value), textOf(min) + " to " + textOf(max) + unit);
+  }
+  void operator()(const ParameterInfo& info, const bool& value) { write(info, &value, value ? "true" : "false", "true, false"); }
+  void operator()(const ParameterInfo& info, const std::string& value) { write(info, &value, quoted(value), "a name"); }
+  template <class Enum, class = std::enable_if_t<std::is_enum_v<Enum>>>
+  void operator()(const ParameterInfo& info, const Enum& value) {
+    write(info, &value, nameOf(value), alternatives(value));
+  }
+
+  void write(const ParameterInfo& info, const void* member, const std::string& value, const std::string& range) {
+    out.in(groupOf(config, member)) << "# " << info.meaning << '\n'
+                                    << "# (" << range << (info.reconfigurable ? "; while running, too)\n" : ")\n")
+                                    << info.name << ": " << value << '\n';
+  }
+};
+
+/// The generator refuses descriptions with quotes in them.
+std::string description(std::string text) {
+  text.erase(std::remove(text.begin(), text.end(), '\''), text.end());
+  return quoted(text);
+}
+
+struct CfgWriter {
+  const Config& config;
+  GroupedText& out;
+
+  template <class Number>
+  void operator()(const ParameterInfo& info, const Number& value, Number min, Number max) {
+    const char* type = std::is_same_v<Number, double> ? "double_t" : "int_t";
+    write(info, &value, type, textOf(value), ", " + textOf(min) + ", " + textOf(max));
+  }
+  void operator()(const ParameterInfo& info, const bool& value) {
+    write(info, &value, "bool_t", value ? "True" : "False", "");
+  }
+  void operator()(const ParameterInfo& info, const std::string& value) { write(info, &value, "str_t", quoted(value), ""); }
+  template <class Enum, class = std::enable_if_t<std::is_enum_v<Enum>>>
+  void operator()(const ParameterInfo& info, const Enum& value) {
+    if (!info.reconfigurable) return;
+    std::ostream& text = out.in(groupOf(config, &value));
+    text << info.name << "_enum = gen.enum([\n";
+    for (const std::string& name : namesOf(value)) {
+      text << "    gen.const(" << quoted(info.name + ("_" + name)) << ", str_t, " << quoted(name) << ", "
+           << quoted(name) << "),\n";
+    }
+    text << "], " << description(info.meaning) << ")\n";
+    write(info, &value, "str_t", quoted(nameOf(value)), ", edit_method=" + std::string(info.name) + "_enum");
+  }
+
+  void write(const ParameterInfo& info, const void* member, const std::string& type, const std::string& value,
+             const std::string& more) {
+    if (!info.reconfigurable) return;
+    const std::string unit = *info.unit == '\0' ? "" : std::string(" [") + info.unit + "]";
+    out.in(groupOf(config, member)) << "group.add(" << quoted(info.name) << ", " << type << ", " << levelOf(config, member)
+                                    << ",\n          " << description(info.meaning + unit) << ",\n          " << value
+                                    << more << ")\n";
+  }
+};
+
+}  // namespace
+
+std::string groupOf(const Config& config, const void* value) {
+  if (isWithin(config.region, value)) return "Region";
+  if (isWithin(config.motion, value)) return "Motion";
+  if (isWithin(config.node, value)) return "Node";
+  return "Classifier";
+}
+
+ReconfigureLevel levelOf(const Config& config, const void* value) {
+  return isWithin(config.node, value) ? kSwitch : kRebuildsGrid;
+}
+
+std::string defaultYaml() {
+  Config config;
+  GroupedText groups;
+  visitParameters(config, YamlWriter{config, groups});
+  return "# Every parameter with its default. Written from the code by donex_write_parameters: change it there.\n" +
+         groups.text("# --- ", " ---");
+}
+
+std::string reconfigureCfg() {
+  Config config;
+  GroupedText groups;
+  visitParameters(config, CfgWriter{config, groups});
+  return "#!/usr/bin/env python3\n"
+         "# The parameters that can be changed while running. Written from the code by donex_write_parameters:\n"
+         "# change it there.\n"
+         "from dynamic_reconfigure.parameter_generator_catkin import ParameterGenerator, bool_t, double_t, int_t, str_t\n"
+         "\n"
+         "gen = ParameterGenerator()\n" +
+         groups.text("group = gen.add_group(\"", "\")") + "\nexit(gen.generate(\"donex\", \"donex\", \"Donex\"))\n";
+}
+
+}  // namespace donex

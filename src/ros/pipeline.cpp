@@ -1,0 +1,187 @@
+#include "donex/ros/pipeline.h"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "donex/core/deskew.h"
+#include "donex/ros/parameters.h"
+
+namespace donex {
+namespace {
+
+std::string cloudOf(const ros::Time& stamp) { return "cloud of " + std::to_string(stamp.toSec()) + " s"; }
+
+double secondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+Pipeline::Pipeline(const Config& config, const tf2::BufferCore& tf, PipelineEvents events)
+    : config_(config), events_(std::move(events)), motion_(config.motion, tf), detector_(makeDetector(config)) {}
+
+void Pipeline::addCloud(const sensor_msgs::PointCloud2ConstPtr& cloud, double now) {
+  ++counts_.clouds_in;
+  const LayoutVerdict verdict = judgeLayout(*cloud);
+  if (const auto* error = std::get_if<LayoutError>(&verdict)) return drop(DropReason::kBadLayout, error->text);
+
+  WaitingCloud waiting{cloud, std::get<CloudLayout>(verdict), {}, now, std::chrono::steady_clock::now()};
+  const bool deskews = config_.motion.deskew && config_.motion.source != OdometrySource::kNone;
+  if (deskews) {
+    std::string problem;
+    waiting.times = parseEchoTimes(*cloud, waiting.layout, problem);
+    if (!problem.empty()) events_.strange_times(problem);
+  }
+  const bool is_old = last_labeled_ && cloud->header.stamp < *last_labeled_;
+  if (is_old) return suspect(std::move(waiting));
+  if (suspect_cloud_) {
+    drop(DropReason::kOutOfOrder, cloudOf(suspect_cloud_->cloud->header.stamp) + " came after a later one was labelled");
+    suspect_cloud_.reset();
+  }
+  place(std::move(waiting));
+}
+
+void Pipeline::place(WaitingCloud cloud) {
+  const ros::Time stamp = cloud.cloud->header.stamp;
+  const auto later = [](const ros::Time& time, const WaitingCloud& other) { return time < other.cloud->header.stamp; };
+  const auto place = std::upper_bound(waiting_.begin(), waiting_.end(), stamp, later);
+  const bool is_waiting = place != waiting_.begin() && std::prev(place)->cloud->header.stamp == stamp;
+  if (is_waiting || last_labeled_ == stamp) return drop(DropReason::kDuplicate, "a second " + cloudOf(stamp));
+  waiting_.insert(place, std::move(cloud));
+  if (waiting_.size() <= static_cast<std::size_t>(config_.node.queue_size)) return;
+  const ros::Time oldest = waiting_.front().cloud->header.stamp;
+  waiting_.pop_front();
+  drop(DropReason::kQueueFull, cloudOf(oldest) + " had to make room for newer ones");
+}
+
+void Pipeline::addOdometry(const nav_msgs::Odometry& odometry) {
+  ++counts_.odometry_in;
+  const bool wanted = config_.motion.source == OdometrySource::kPose || config_.motion.source == OdometrySource::kTwist;
+  if (wanted) use(odometry);
+}
+
+void Pipeline::use(const nav_msgs::Odometry& odometry) {
+  const OdometryVerdict verdict = motion_.add(odometry);
+  switch (verdict.kind) {
+    case OdometryVerdict::Kind::kRefused: return refuse(verdict.refusal, verdict.text);
+    case OdometryVerdict::Kind::kTimeRanBack: return suspect(odometry);
+    case OdometryVerdict::Kind::kNewTrack:
+      reset();
+      events_.forgotten(verdict.text + ": the grid is forgotten");
+      break;
+    case OdometryVerdict::Kind::kUsed: break;
+  }
+  if (!suspect_odometry_) return;
+  refuse(OdometryRefusal::kTooOld, "one odometry was much older than its neighbours");
+  suspect_odometry_.reset();
+}
+
+void Pipeline::suspect(WaitingCloud cloud) {
+  const bool is_second = suspect_cloud_ || suspect_odometry_;
+  if (!is_second) {
+    suspect_cloud_ = std::move(cloud);
+    return;
+  }
+  startAnew("clouds went back to " + std::to_string(cloud.cloud->header.stamp.toSec()) + " s");
+  place(std::move(cloud));
+}
+
+void Pipeline::suspect(const nav_msgs::Odometry& odometry) {
+  const bool is_second = suspect_cloud_ || suspect_odometry_;
+  if (!is_second) {
+    suspect_odometry_ = odometry;
+    return;
+  }
+  startAnew("odometry went back to " + std::to_string(odometry.header.stamp.toSec()) + " s");
+  use(odometry);
+}
+
+void Pipeline::startAnew(const std::string& why) {
+  const auto cloud = std::exchange(suspect_cloud_, std::nullopt);
+  const auto odometry = std::exchange(suspect_odometry_, std::nullopt);
+  for (const WaitingCloud& waiting : std::exchange(waiting_, {})) {
+    drop(DropReason::kTimeRanBack, cloudOf(waiting.cloud->header.stamp) + " was waiting when time ran back");
+  }
+  motion_.reset();
+  reset();
+  last_labeled_.reset();
+  events_.forgotten("time ran back (" + why + "): buffers and grid are cleared");
+  if (odometry) use(*odometry);
+  if (cloud) place(*cloud);
+}
+
+bool Pipeline::step(double now) {
+  if (waiting_.empty()) return false;
+  WaitingCloud& oldest = waiting_.front();
+  oldest.arrival = std::min(oldest.arrival, now);  // a clock set back must not make it wait for ever
+  const bool settle = now - oldest.arrival >= config_.motion.odometry_timeout;
+  const auto& header = oldest.cloud->header;
+  const auto answer = motion_.during({header.stamp, oldest.times.first, oldest.times.last}, header.frame_id, settle);
+  const auto* missing = std::get_if<MotionMissing>(&answer);
+  if (missing != nullptr && missing->may_come && !settle) return false;
+
+  const WaitingCloud waiting = std::move(oldest);
+  waiting_.pop_front();
+  if (missing != nullptr) {
+    drop(missing->reason, missing->text);
+    return true;
+  }
+  try {
+    label(waiting, std::get<ScanMotion>(answer));
+    ++counts_.clouds_labeled;
+  } catch (const std::exception& error) {
+    drop(DropReason::kInternalError, error.what());
+  }
+  return true;
+}
+
+void Pipeline::label(const WaitingCloud& waiting, const ScanMotion& motion) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto& stamp = waiting.cloud->header.stamp;
+  scan_.stamp = stamp.toSec();
+  scan_.base_from_sensor = motion.base_from_sensor;
+  scan_.odom_from_base = motion.odom_from_base;
+  parseEchoes(*waiting.cloud, waiting.layout, scan_.echoes);
+  if (motion.track != nullptr) {
+    const MotionFault fault = deskew(*motion.track, scan_.stamp, scan_.base_from_sensor, waiting.times.after_stamp,
+                                     scan_.echoes);
+    if (fault != MotionFault::kNone) throw std::runtime_error(std::string("de-skewing: ") + describe(fault));
+  }
+  detector_->process(scan_, labels_);
+  last_labeled_ = stamp;
+  events_.labeled({waiting.cloud, waiting.layout, scan_, labels_, *detector_, motion.odom_frame, waiting.received,
+                   secondsSince(start)});
+}
+
+void Pipeline::finish() {
+  while (step(std::numeric_limits<double>::infinity())) {
+  }
+  if (!suspect_cloud_) return;
+  drop(DropReason::kOutOfOrder, cloudOf(suspect_cloud_->cloud->header.stamp) + " came after a later one was labelled");
+  suspect_cloud_.reset();
+}
+
+void Pipeline::reset() { detector_->reset(); }
+
+void Pipeline::configure(const Config& config) {
+  const auto faults = config.faults();
+  if (!faults.empty()) throw std::invalid_argument(joined(faults));
+  if (!sameDetection(config_, config)) detector_ = makeDetector(config);
+  const MotionConfig motion = config_.motion;
+  config_ = config;
+  config_.motion = motion;
+}
+
+void Pipeline::refuse(OdometryRefusal refusal, const std::string& text) {
+  counts_.refused.add(refusal);
+  events_.refused(refusal, text);
+}
+
+void Pipeline::drop(DropReason reason, const std::string& text) {
+  counts_.dropped.add(reason);
+  events_.dropped(reason, text);
+}
+
+}  // namespace donex
