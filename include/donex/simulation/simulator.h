@@ -28,7 +28,7 @@ struct OdometryOptions {
 
 struct SimulatorOptions {
   std::uint64_t seed = 1;     ///< varies the scene, and all noise; the same seed gives the same scans bit for bit
-  int beams = 64;             ///< 16, 32, 64 or 128; scenes for sparse sensors have a default of their own: 0
+  int beams = 0;              ///< 16, 32, 64 or 128; 0: what suits the scene (64; empty_room 16)
   double duration = 20.0;     ///< [s]; 0: endless
   double scan_rate = 10.0;    ///< turns of the sensor a second [Hz]
   double start_stamp = 0.0;   ///< stamp at which the scene begins [s]; the first scan is complete one turn later

@@ -1,0 +1,52 @@
+#include "donex/simulation/sensor_model.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace donex::simulation {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// `count` beams from `lowest` upwards, evenly [deg].
+void append(SensorModel& model, double lowest, double spacing, int count) {
+  for (int i = 0; i < count; ++i) {
+    model.slopes.push_back(static_cast<float>(std::tan((lowest + spacing * i) * kPi / 180.0)));
+  }
+}
+
+}  // namespace
+
+double SensorModel::azimuth(int column) const { return kPi - 2.0 * kPi * (column + 0.5) / columns; }
+
+SensorModel makeSensorModel(int beams) {
+  SensorModel model;
+  switch (beams) {
+    case 16:
+      append(model, -15.0, 2.0, 16);
+      model.columns = 1800;
+      model.min_range = 0.4f;
+      return model;
+    case 32:
+      append(model, -30.67, 4.0 / 3.0, 32);
+      model.columns = 2160;
+      return model;
+    case 64:
+      append(model, -24.33, 0.5, 32);
+      append(model, -8.33, 1.0 / 3.0, 32);
+      model.columns = 2400;
+      return model;
+    case 128:
+      append(model, -25.0, 1.0, 19);
+      append(model, -6.0, 0.125, 64);
+      append(model, 2.0, 0.25, 24);
+      append(model, 8.0, 0.4, 21);
+      model.columns = 1800;
+      return model;
+    default:
+      throw std::invalid_argument("beams: 16, 32, 64 or 128, not " + std::to_string(beams));
+  }
+}
+
+}  // namespace donex::simulation

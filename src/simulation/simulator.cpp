@@ -1,0 +1,187 @@
+#include "donex/simulation/simulator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "donex/simulation/odometry_error.h"
+#include "donex/simulation/scene.h"
+#include "donex/simulation/sweep.h"
+
+namespace donex::simulation {
+
+OdometryOptions OdometryOptions::exact() {
+  OdometryOptions options;
+  options.position_noise = options.rotation_noise = options.drift = options.yaw_drift = 0.0;
+  options.linear_noise = options.angular_noise = 0.0;
+  return options;
+}
+
+std::vector<std::string> SimulatorOptions::faults() const {
+  std::vector<std::string> faults;
+  const auto within = [&](const char* name, double value, double low, double high) {
+    if (value >= low && value <= high) return;
+    faults.push_back(std::string(name) + ": " + std::to_string(value) + " is not within " + std::to_string(low) + " and " +
+                     std::to_string(high));
+  };
+  const bool known_beams = beams == 0 || beams == 16 || beams == 32 || beams == 64 || beams == 128;
+  if (!known_beams) faults.push_back("beams: 16, 32, 64, 128 or 0, not " + std::to_string(beams));
+  within("duration", duration, 0.0, 1e6);
+  within("scan_rate", scan_rate, 1.0, 50.0);
+  within("start_stamp", start_stamp, 0.0, 4e9);
+  within("range_noise", range_noise, 0.0, 1.0);
+  within("dropout", dropout, 0.0, 1.0);
+  within("max_range", max_range, 5.0, 300.0);
+  within("odometry rate", odometry.rate, 1.0, 1000.0);
+  within("odometry position_noise", odometry.position_noise, 0.0, 1.0);
+  within("odometry rotation_noise", odometry.rotation_noise, 0.0, 0.5);
+  within("odometry drift", odometry.drift, 0.0, 0.5);
+  within("odometry yaw_drift", odometry.yaw_drift, 0.0, 0.1);
+  within("odometry linear_noise", odometry.linear_noise, 0.0, 10.0);
+  within("odometry angular_noise", odometry.angular_noise, 0.0, 1.0);
+  within("odometry stamp_offset", odometry.stamp_offset, -1.0, 1.0);
+  return faults;
+}
+
+Scan SimulatedScan::coreScan() const {
+  Scan scan;
+  scan.stamp = stamp;
+  scan.base_from_sensor = base_from_sensor;
+  scan.odom_from_base = odom_from_base;
+  scan.echoes.reserve(echoes.size());
+  for (const SimulatedEcho& echo : echoes) scan.echoes.push_back(echo.position);
+  return scan;
+}
+
+namespace {
+
+std::string listed(const std::vector<std::string>& faults) {
+  std::string text;
+  for (const std::string& fault : faults) text += (text.empty() ? "" : "\n") + fault;
+  return text;
+}
+
+/// Checks everything that can be wrong before anything is built.
+SimulatorOptions checked(const std::string& scene, const SimulatorOptions& options) {
+  std::vector<std::string> faults = options.faults();
+  const auto& names = sceneNames();
+  if (std::find(names.begin(), names.end(), scene) == names.end()) faults.push_back(unknownScene(scene));
+  if (!faults.empty()) throw std::invalid_argument(listed(faults));
+  return options;
+}
+
+SensorOptions sensorOptions(const SimulatorOptions& options) {
+  SensorOptions sensor;
+  sensor.duration = 1.0 / options.scan_rate;
+  sensor.distortion = options.distortion;
+  sensor.range_noise = options.range_noise;
+  sensor.dropout = options.dropout;
+  sensor.max_range = options.max_range;
+  sensor.seed = options.seed;
+  return sensor;
+}
+
+/// Heading and place of the vehicle at the start; the vertical stays the vertical.
+Eigen::Isometry3d odomFrom(const Eigen::Isometry3d& start) {
+  const double yaw = std::atan2(start.linear()(1, 0), start.linear()(0, 0));
+  Eigen::Isometry3d scene_from_odom = Eigen::Isometry3d::Identity();
+  scene_from_odom.translation() = start.translation();
+  scene_from_odom.rotate(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
+  return scene_from_odom.inverse();
+}
+
+}  // namespace
+
+struct Simulator::State {
+  State(const std::string& name, const SimulatorOptions& given)
+      : options(checked(name, given)),
+        scene(makeScene(name, given.seed)),
+        sensor(makeSensorModel(given.beams == 0 ? scene.beams : given.beams)),
+        sweep(scene, sensor, sensorOptions(given)),
+        odometry_error(given.odometry, scramble(given.seed, 0x0D0)),
+        odom_from_scene(odomFrom(poseOf(scene.ego, scene.ground, 0.0))),
+        next_sample(-static_cast<long>(std::ceil(0.1 * given.odometry.rate))) {}
+
+  double period() const { return 1.0 / options.scan_rate; }
+  Eigen::Isometry3d odomFromBase(double time) const { return odom_from_scene * poseOf(scene.ego, scene.ground, time); }
+  Twist twist(double time) const;
+  void report(double until, std::vector<OdometrySample>& samples);
+
+  SimulatorOptions options;
+  Scene scene;
+  SensorModel sensor;
+  Sweep sweep;
+  OdometryError odometry_error;
+  Eigen::Isometry3d odom_from_scene;
+  long next_sample;  // counted from the scene's beginning
+  std::size_t next_scan = 0;
+};
+
+Twist Simulator::State::twist(double time) const {
+  constexpr double kHalfStep = 1e-3;  // [s]
+  const Eigen::Isometry3d moved = odomFromBase(time - kHalfStep).inverse() * odomFromBase(time + kHalfStep);
+  const Eigen::AngleAxisd turned(moved.linear());
+  return {moved.translation() / (2.0 * kHalfStep), turned.angle() * turned.axis() / (2.0 * kHalfStep)};
+}
+
+void Simulator::State::report(double until, std::vector<OdometrySample>& samples) {
+  constexpr double kRounding = 1e-9;  // [s]
+  samples.clear();
+  for (;; ++next_sample) {
+    const double time = static_cast<double>(next_sample) / options.odometry.rate;
+    if (time > until + kRounding) return;
+    samples.push_back(odometry_error.report(options.start_stamp + time, odomFromBase(time), twist(time)));
+  }
+}
+
+Simulator::Simulator(const std::string& scene, const SimulatorOptions& options)
+    : state_(std::make_unique<State>(scene, options)) {}
+Simulator::~Simulator() = default;
+Simulator::Simulator(Simulator&&) noexcept = default;
+Simulator& Simulator::operator=(Simulator&&) noexcept = default;
+
+std::size_t Simulator::size() const {
+  return static_cast<std::size_t>(std::floor(state_->options.duration * state_->options.scan_rate + 1e-6));
+}
+
+bool Simulator::next(SimulatedScan& scan) {
+  State& state = *state_;
+  const bool over = state.options.duration > 0.0 && state.next_scan >= size();
+  if (over) return false;
+  const double time = static_cast<double>(state.next_scan + 1) * state.period();
+  scan.stamp = state.options.start_stamp + time;
+  scan.odom_from_base = state.odomFromBase(time);
+  scan.base_from_sensor = state.scene.ego.base_from_sensor;
+  state.sweep.measure(time, state.next_scan, scan.echoes, scan.labels);
+  state.report(time, scan.odometry);
+  ++state.next_scan;
+  return true;
+}
+
+Eigen::Isometry3d Simulator::odomFromBase(double stamp) const {
+  return state_->odomFromBase(stamp - state_->options.start_stamp);
+}
+
+Eigen::Isometry3d Simulator::baseFromSensor() const { return state_->scene.ego.base_from_sensor; }
+
+std::vector<MoverTruth> Simulator::movers(double stamp) const {
+  const double time = stamp - state_->options.start_stamp;
+  std::vector<MoverTruth> truths;
+  for (std::size_t i = 0; i < state_->scene.movers.size(); ++i) {
+    const Mover& mover = state_->scene.movers[i];
+    const Eigen::AlignedBox3d box = mover.model.box();
+    MoverTruth truth;
+    truth.label = labelOf(mover, time) | instanceBits(i);
+    truth.odom_from_box = state_->odom_from_scene * poseOf(mover, state_->scene.ground, time);
+    truth.velocity = truth.odom_from_box.linear().col(0) * mover.course.groundSpeed(time);
+    truth.odom_from_box.translate(box.center());
+    truth.size = box.sizes();
+    truths.push_back(truth);
+  }
+  return truths;
+}
+
+int Simulator::beams() const { return state_->sensor.beams(); }
+int Simulator::columns() const { return state_->sensor.columns; }
+
+}  // namespace donex::simulation
