@@ -45,3 +45,21 @@ source_setup() {
   source "$1"
   set -u
 }
+
+# Builds the package in the workspace (not its tests), and takes on the workspace's environment.
+build_workspace() {
+  make_workspace
+  say "Building in $workspace"
+  catkin_make -C "$workspace" --cmake-args "${cmake_arguments[@]}"
+  source_setup "$workspace/devel/setup.bash"
+}
+
+# A roscore of our own: never somebody else's, and no name resolution that a container may lack.
+use_own_master() {
+  local port
+  port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("localhost", 0)); print(s.getsockname()[1])')
+  export ROS_MASTER_URI=http://localhost:$port ROS_HOSTNAME=localhost
+  unset ROS_IP
+}
+
+master_port() { echo "${ROS_MASTER_URI##*:}"; }
