@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "evidence_detector.h"
 #include "paper_detectors.h"
 
 namespace donex {
@@ -13,11 +14,12 @@ std::unique_ptr<Detector> makeDetector(const Config& config) {
     for (const std::string& fault : faults) text += "\n  " + fault;
     throw std::invalid_argument(text);
   }
+  const bool is_paper = !config.evidence.any() && !config.objects.enabled;
   switch (config.method) {
-    case Method::kDonex2d: return makePaperDetector2d(config);
+    case Method::kDonex2d: return is_paper ? makePaperDetector2d(config) : makeEvidenceDetector2d(config);
     case Method::kDonex3d: break;
   }
-  return makePaperDetector3d(config);
+  return is_paper ? makePaperDetector3d(config) : makeEvidenceDetector3d(config);
 }
 
 }  // namespace donex

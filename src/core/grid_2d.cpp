@@ -4,55 +4,17 @@
 #include <cmath>
 
 namespace donex {
-namespace {
-
-int wrapped(int i, int n) { return i >= n ? i - n : i; }
-int modulo(int i, int n) { return (i % n + n) % n; }
-
-}  // namespace
-
-Grid2d::Grid2d(const Config& config)
-    : window_(config),
-      width_(window_.extent().x()),
-      depth_(window_.extent().y()),
-      cells_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(depth_)) {}
-
-std::uint32_t Grid2d::slotOf(int x, int y) const {
-  return static_cast<std::uint32_t>(wrapped(y + shift_y_, depth_) * width_ + wrapped(x + shift_x_, width_));
-}
+Grid2d::Grid2d(const Config& config) : window_(config), layout_(window_), cells_(layout_.slots()) {}
 
 std::uint32_t Grid2d::slotOf(const Eigen::Vector3f& echo) const {
-  return slotOf(static_cast<int>(std::floor(echo.x())), static_cast<int>(std::floor(echo.y())));
+  return layout_.slotOf(static_cast<int>(std::floor(echo.x())), static_cast<int>(std::floor(echo.y())));
 }
 
 void Grid2d::shift(const Eigen::Isometry3d& odom_from_base) {
   if (window_.compensation() == Compensation::kScroll) {
-    scroll(odom_from_base);
+    layout_.scroll(window_, odom_from_base, [&](std::uint32_t slot) { cells_[slot].range = HeightRange{}; });
   } else {
     resample(odom_from_base);
-  }
-}
-
-void Grid2d::scroll(const Eigen::Isometry3d& odom_from_base) {
-  const Index3 before = window_.minIndex();
-  window_.moveTo(odom_from_base);
-  const Index3 moved = window_.minIndex() - before;
-  lift_ = is_first_ ? 0 : lift_ + moved.z();
-  is_first_ = false;
-  shift_x_ = modulo(window_.minIndex().x(), width_);
-  shift_y_ = modulo(window_.minIndex().y(), depth_);
-  forgetEntered(moved.x(), moved.y());
-}
-
-void Grid2d::forgetEntered(int moved_x, int moved_y) {
-  // The slots of cells that entered the window still hold the cells that left it.
-  const int x_first = moved_x > 0 ? std::max(0, width_ - moved_x) : 0;
-  const int x_end = moved_x > 0 ? width_ : std::min(width_, -moved_x);
-  for (int y = 0; y < depth_; ++y) {
-    const bool row_entered = y + moved_y < 0 || y + moved_y >= depth_;
-    const int first = row_entered ? 0 : x_first;
-    const int end = row_entered ? width_ : x_end;
-    for (int x = first; x < end; ++x) cells_[slotOf(x, y)].range = HeightRange{};
   }
 }
 
@@ -70,20 +32,20 @@ void Grid2d::place(const Content& content, const Eigen::Isometry3d& grid_from_od
   const Eigen::Vector3d hi = toWindow(grid_from_odom * content.hi_in_odom);
   const Eigen::Vector2d middle = 0.5 * (lo + hi).head<2>();
   const int x = static_cast<int>(std::floor(middle.x())), y = static_cast<int>(std::floor(middle.y()));
-  if (x < 0 || x >= width_ || y < 0 || y >= depth_) return;
-  Cell& cell = cells_[slotOf(x, y)];
+  if (!window_.contains({x, y, 0})) return;
+  const std::uint32_t slot = layout_.slotOf(x, y);
+  Cell& cell = cells_[slot];
   HeightRange range;
   range.extend(static_cast<float>(lo.z()));
   range.extend(static_cast<float>(hi.z()));
   if (cell.range.empty()) {
     cell.range = range;
     cell.content = static_cast<std::uint32_t>(contents_.size());
-    contents_.push_back({content.lo_in_odom, content.hi_in_odom, slotOf(x, y)});
+    contents_.push_back({content.lo_in_odom, content.hi_in_odom, slot});
     return;
   }
   // Two contents in one cell: the older keeps its place and grows to the range of both.
-  cell.range.extend(range.lo);
-  cell.range.extend(range.hi);
+  cell.range.extend(range);
   Content& older = contents_[cell.content];
   const Eigen::Vector2d at =
       0.5 * (toWindow(grid_from_odom * older.lo_in_odom) + toWindow(grid_from_odom * older.hi_in_odom)).head<2>();
@@ -112,7 +74,7 @@ void Grid2d::resize(const GridScan& scan) {
       cell.range = HeightRange{};
       if (window_.compensation() == Compensation::kResample) hit_.push_back(slot);
     }
-    cell.range.extend(heightOf(echo));
+    cell.range.extend(layout_.heightOf(echo));
   }
   if (window_.compensation() == Compensation::kResample) rememberContents();
 }
@@ -122,10 +84,11 @@ void Grid2d::rememberContents() {
   const auto is_hit = [&](const Content& content) { return cells_[content.slot].scan == scan_; };
   contents_.erase(std::remove_if(contents_.begin(), contents_.end(), is_hit), contents_.end());
   for (const std::uint32_t slot : hit_) {
-    const int x = modulo(static_cast<int>(slot) % width_ - shift_x_, width_);
-    const int y = modulo(static_cast<int>(slot) / width_ - shift_y_, depth_);
+    const Index3 cell = layout_.cellOf(slot);
+    const Eigen::Vector2d center = cell.head<2>().cast<double>().array() + 0.5;
     const HeightRange& range = cells_[slot].range;
-    contents_.push_back({fromWindow({x + 0.5, y + 0.5, range.lo}), fromWindow({x + 0.5, y + 0.5, range.hi}), slot});
+    contents_.push_back({fromWindow({center.x(), center.y(), range.lo}),
+                         fromWindow({center.x(), center.y(), range.hi}), slot});
   }
 }
 
@@ -133,10 +96,10 @@ void Grid2d::reset() {
   std::fill(cells_.begin(), cells_.end(), Cell{});
   contents_.clear();
   scan_ = 0;
-  is_first_ = true;
+  layout_.reset();
 }
 
-HeightRange Grid2d::rangeAt(int x, int y) const { return cells_[slotOf(x, y)].range; }
+HeightRange Grid2d::rangeAt(int x, int y) const { return cells_[layout_.slotOf(x, y)].range; }
 
 std::size_t Grid2d::memoryBytes() const {
   return cells_.capacity() * sizeof(Cell) + contents_.capacity() * sizeof(Content) +

@@ -3,6 +3,7 @@
 
 #include "donex/core/detector.h"
 #include "donex/core/grid_3d.h"
+#include "support/configs.h"
 #include "support/oracle.h"
 #include "support/random_scans.h"
 
@@ -10,8 +11,7 @@ namespace donex {
 namespace {
 
 Config smallGrid(Method method, Compensation compensation, double voxel_size) {
-  Config config;
-  config.method = method;
+  Config config = testing::paperConfig(method);
   config.compensation = compensation;
   config.voxel_size = voxel_size;
   config.region = {-6.0, 9.0, -7.0, 5.0, -2.0, 3.0};

@@ -31,6 +31,35 @@ struct Region {
   double z_min = -4.0, z_max = 6.0;
 };
 
+/// Evidence beyond the paper's rule (algorithm section 5); each step can be switched off alone.
+/// With all of them off a method is the paper's.
+struct EvidenceConfig {
+  bool free_evidence = true;
+  int free_scans = 2;
+  double history_length = 2.0;  // [s]
+  double sight_margin = 0.5;    // [m]
+  bool careful_sight = true;
+  double sight_gap = 2.2;  // [deg]
+  int settled_free_scans = 4;
+  bool birth_age = true;
+  double birth_window = 1.5;  // [s]
+  bool neighbourhood = true;
+  bool ground = true;
+  double ground_clearance = 0.25;  // [m]
+
+  bool any() const { return free_evidence || careful_sight || birth_age || neighbourhood || ground; }
+};
+
+/// Connected echoes are judged together and followed over time.
+struct ObjectConfig {
+  bool enabled = true;
+  double cell = 0.3;         // [m]
+  double height = 4.5;       // [m]
+  int min_echoes = 5;
+  double new_share = 0.3;
+  double stop_time = 0.5;    // [s]
+};
+
 /// Where the ego motion comes from, and how long a cloud waits for it.
 struct MotionConfig {
   OdometrySource source = OdometrySource::kPose;
@@ -55,6 +84,8 @@ struct Config {
   double voxel_size = 0.2;  // [m]
   Region region;
   Compensation compensation = Compensation::kScroll;
+  EvidenceConfig evidence;
+  ObjectConfig objects;
   MotionConfig motion;
   NodeConfig node;
 
@@ -86,6 +117,28 @@ void visitParameters(Config& config, Visitor&& visit) {
   visit(ParameterInfo{"z_max", "m", "region of interest, vehicle frame, top", true}, r.z_max, -100.0, 100.0);
   visit(ParameterInfo{"compensation", "", "voxel shift: scroll the grid in the odometry frame's axes, or resample its contents into the vehicle frame", true},
         config.compensation);
+
+  EvidenceConfig& e = config.evidence;
+  visit(ParameterInfo{"free_evidence", "", "a place counts as new only where earlier scans saw it free", true}, e.free_evidence);
+  visit(ParameterInfo{"free_scans", "scans", "scans that must have seen a place free", true}, e.free_scans, 1, 20);
+  visit(ParameterInfo{"history_length", "s", "how long a scan's lines of sight are remembered", true}, e.history_length, 0.1, 10.0);
+  visit(ParameterInfo{"sight_margin", "m", "how far behind a place a line of sight must end to see it free", true}, e.sight_margin, 0.0, 5.0);
+  visit(ParameterInfo{"careful_sight", "", "read the nearest of neighbouring lines of sight, so grazed surfaces are not seen free, and several scans to free a settled voxel", true}, e.careful_sight);
+  visit(ParameterInfo{"sight_gap", "deg", "largest angle between two beams that are read as neighbours", true}, e.sight_gap, 0.1, 10.0);
+  visit(ParameterInfo{"settled_free_scans", "scans", "scans that must have seen a settled voxel free before it counts as new again", true}, e.settled_free_scans, 1, 50);
+  visit(ParameterInfo{"birth_age", "", "a voxel stays new for a while after its birth, not for one scan only", true}, e.birth_age);
+  visit(ParameterInfo{"birth_window", "s", "how long a voxel stays new; older ones are settled", true}, e.birth_window, 0.0, 10.0);
+  visit(ParameterInfo{"neighbourhood", "", "a new voxel that touches settled ones is a surface on a voxel border", true}, e.neighbourhood);
+  visit(ParameterInfo{"ground", "", "echoes on the local ground are never dynamic", true}, e.ground);
+  visit(ParameterInfo{"ground_clearance", "m", "height above the local ground below which an echo is ground", true}, e.ground_clearance, 0.0, 2.0);
+
+  ObjectConfig& o = config.objects;
+  visit(ParameterInfo{"objects", "", "connected echoes are judged together and followed over time", true}, o.enabled);
+  visit(ParameterInfo{"object_cell", "m", "edge of the cells whose touching connects echoes", true}, o.cell, 0.1, 2.0);
+  visit(ParameterInfo{"object_height", "m", "echoes higher above ground belong to no object", true}, o.height, 0.5, 20.0);
+  visit(ParameterInfo{"object_min_echoes", "echoes", "new echoes that an object must have to be dynamic", true}, o.min_echoes, 1, 1000);
+  visit(ParameterInfo{"object_new_share", "", "share of new among the new and settled echoes of a dynamic object", true}, o.new_share, 0.0, 1.0);
+  visit(ParameterInfo{"object_stop_time", "s", "an object without evidence of motion stays dynamic for this long", true}, o.stop_time, 0.0, 30.0);
 
   MotionConfig& m = config.motion;
   visit(ParameterInfo{"odometry_source", "", "ego motion: odometry pose, odometry twist integrated, tf, or none for a sensor at rest", false}, m.source);

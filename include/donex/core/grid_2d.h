@@ -2,25 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <vector>
 
-#include "donex/core/grid_window.h"
+#include "donex/core/cell_layout.h"
 
 namespace donex {
-
-/// [lo, hi] of the heights in a cell; empty where lo > hi.
-struct HeightRange {
-  float lo = std::numeric_limits<float>::infinity();
-  float hi = -std::numeric_limits<float>::infinity();
-
-  bool empty() const { return lo > hi; }
-  bool holds(float z) const { return z >= lo && z <= hi; }
-  void extend(float z) {
-    lo = z < lo ? z : lo;
-    hi = z > hi ? z : hi;
-  }
-};
 
 /// The remembered ranges R_k of algorithm section 2, heights in voxel edge lengths above the window's
 /// floor level of the first scan. Steps are called in the paper's order: shift, (does the range hold the echo?), resize.
@@ -32,7 +18,7 @@ class Grid2d {
   void shift(const Eigen::Isometry3d& odom_from_base);
 
   /// True where the remembered range of the echo's cell holds its height. `echo` in the window, inside it.
-  bool remembers(const Eigen::Vector3f& echo) const { return cells_[slotOf(echo)].range.holds(heightOf(echo)); }
+  bool remembers(const Eigen::Vector3f& echo) const { return cells_[slotOf(echo)].range.holds(layout_.heightOf(echo)); }
 
   /// Resizing: a hit cell takes the scan's own range, any other keeps its own.
   void resize(const GridScan& scan);
@@ -56,23 +42,15 @@ class Grid2d {
     std::uint32_t slot;
   };
 
-  void scroll(const Eigen::Isometry3d& odom_from_base);
   void resample(const Eigen::Isometry3d& odom_from_base);
-  void forgetEntered(int moved_x, int moved_y);
   void place(const Content& content, const Eigen::Isometry3d& grid_from_odom);
   void rememberContents();
   Eigen::Vector3d toWindow(const Eigen::Vector3d& in_grid) const;
   Eigen::Vector3d fromWindow(const Eigen::Vector3d& in_window) const;
-  std::uint32_t slotOf(int x, int y) const;
   std::uint32_t slotOf(const Eigen::Vector3f& echo) const;
-  /// Heights stay comparable while the window scrolls up and down.
-  float heightOf(const Eigen::Vector3f& echo) const { return echo.z() + static_cast<float>(lift_); }
 
   GridWindow window_;
-  int width_, depth_;              ///< cells
-  int shift_x_ = 0, shift_y_ = 0;  ///< slot of the window's lowest cell
-  int lift_ = 0;                   ///< how far the window's floor has risen since the first scan [voxels]
-  bool is_first_ = true;
+  CellLayout layout_;
   std::uint32_t scan_ = 0;
   std::vector<Cell> cells_;
   std::vector<Content> contents_;    ///< resample: one a cell with a range

@@ -1,0 +1,58 @@
+// When each voxel became occupied, and whether it had been free before (algorithm section 5, steps 1 to 4).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "donex/core/brick_mask.h"
+#include "donex/core/grid_window.h"
+
+namespace donex {
+
+/// What is remembered of a voxel.
+struct VoxelRecord {
+  std::uint32_t birth = 0;     ///< scan in which it became occupied; 0: it never was
+  std::uint32_t last_hit = 0;  ///< scan that hit it last
+  bool was_free = false;       ///< at its birth the place had been seen free
+  bool at_surface = false;     ///< at its birth it touched established voxels
+
+  bool occupied() const { return birth != 0; }
+};
+
+/// Records of the voxels that were ever hit while they were in the window. Bricks of 4 x 4 x 4 records
+/// are held only where something was hit: memory is bounded by the region, not by the distance driven.
+class BirthMemory {
+ public:
+  explicit BirthMemory(const Config& config);
+
+  /// Moves the memory to the vehicle's new pose; what leaves the window is forgotten.
+  void shift(const Eigen::Isometry3d& odom_from_base);
+
+  /// Record of a voxel in the window, or nullptr where none is remembered.
+  const VoxelRecord* find(const Index3& in_window) const;
+  /// Record of a voxel in the window, made where there is none. Valid until the next call.
+  VoxelRecord& at(const Index3& in_window);
+
+  void reset();
+  const GridWindow& window() const { return window_; }
+  std::size_t memoryBytes() const;
+
+ private:
+  struct Brick {
+    std::uint32_t slot;
+    std::array<VoxelRecord, 64> records;
+  };
+  static constexpr std::uint32_t kNoBrick = 0xFFFFFFFF;
+
+  void scroll(const Eigen::Isometry3d& odom_from_base);
+  void resample(const Eigen::Isometry3d& odom_from_base);
+  void forget(std::uint32_t brick);
+
+  GridWindow window_;
+  BrickLayout layout_;
+  std::vector<std::uint32_t> brick_of_slot_;
+  std::vector<Brick> bricks_;
+};
+
+}  // namespace donex

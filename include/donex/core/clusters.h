@@ -1,0 +1,64 @@
+// Connected echoes (algorithm section 5, step 6).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace donex {
+
+/// Groups echoes whose cells touch. Cells are cubes over x, y and the height above ground; echoes a
+/// beam apart touch at any range, since the reach grows with the distance from the sensor.
+class Clusters {
+ public:
+  struct Settings {
+    double cell = 0.3;           ///< edge of a cell [m]
+    double height = 4.5;         ///< echoes higher above ground belong to no cluster [m]
+    double across_angle = 0.01;  ///< echoes within this angle [rad] touch, horizontally
+    double up_angle = 0.015;     ///< the same vertically
+  };
+
+  /// A square of `reach` [m] around the sensor.
+  Clusters(double reach, const Settings& settings);
+
+  /// `echoes` [m] in a frame whose z points up, `heights` above ground [m], one an echo; `member` kOut, kIn or kSkirt.
+  void connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
+               const std::vector<float>& heights, const std::vector<std::uint8_t>& member);
+
+  static constexpr std::uint8_t kOut = 0;    ///< left out
+  static constexpr std::uint8_t kIn = 1;     ///< connects
+  static constexpr std::uint8_t kSkirt = 2;  ///< near the ground: belongs to what stands right above, connects nothing
+  static constexpr int kNone = -1;
+  /// Cluster of an echo, 0 to count() - 1, or kNone.
+  int of(std::size_t echo) const { return of_[echo]; }
+  int count() const { return count_; }
+
+  std::size_t memoryBytes() const;
+
+ private:
+  struct Cell {
+    int x, y, z;
+    int parent;  ///< union-find over cells
+  };
+
+  int indexOf(int x, int y, int z) const { return (z * width_ + y) * width_ + x; }
+  int rootOf(int cell);
+  void fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
+            const std::vector<float>& heights, const std::vector<std::uint8_t>& member);
+  void hangSkirt();
+  void join(int cell);
+  void number();
+
+  Settings settings_;
+  int width_, layers_;
+  std::vector<int> cell_at_;  ///< by index: number of the cell, or kNone
+  std::vector<Cell> cells_;
+  std::vector<int> of_;
+  std::vector<std::array<int, 3>> skirt_;  ///< echo, x, y
+  std::vector<int> number_of_root_;
+  int count_ = 0;
+};
+
+}  // namespace donex

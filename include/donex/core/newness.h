@@ -1,0 +1,101 @@
+// Is an echo's place new, settled, or neither? The question of both grids, each from its own memory.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+
+#include "donex/core/birth_memory.h"
+#include "donex/core/cell_layout.h"
+#include "donex/core/sight_history.h"
+
+namespace donex {
+
+/// What the grid knows of the place an echo hit.
+enum class Place : std::uint8_t {
+  kUnobserved,  ///< hit for the first time not long ago, and never seen free before
+  kNew,         ///< occupied not long ago after it had been seen free: something came
+  kSettled,     ///< occupied for longer than the birth window
+};
+
+/// The scans so far by number, and which births count as young.
+class ScanClock {
+ public:
+  explicit ScanClock(double birth_window) : birth_window_(birth_window) {}
+
+  /// Begins the next scan [s].
+  void begin(double stamp);
+  void reset();
+
+  std::uint32_t scan() const { return scan_; }  ///< 1 for the first
+  bool isYoung(std::uint32_t birth) const { return birth >= oldest_young_; }
+  /// Stamp of a scan [s], as far as they are remembered; earlier scans count as before everything.
+  double stampOf(std::uint32_t scan) const;
+
+ private:
+  double birth_window_;
+  std::uint32_t scan_ = 0, oldest_young_ = 1;
+  std::deque<double> stamps_;  ///< of the last scans, newest last
+};
+
+/// The 3D grid's answer, from each voxel's birth (algorithm section 5, steps 1 to 4).
+class Newness3d {
+ public:
+  explicit Newness3d(const Config& config) : config_(config.evidence), memory_(config) {}
+
+  void shift(const Eigen::Isometry3d& odom_from_base) { memory_.shift(odom_from_base); }
+
+  /// Judges one echo of the present scan and remembers it. `in_window` in voxel edge lengths, `point` the
+  /// same in [m], as the history is asked. A scan's echoes of one voxel share the judgement of the first.
+  Place judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& point, const ScanClock& clock,
+              const SightHistory& history);
+
+  void reset() { memory_.reset(); }
+  const GridWindow& window() const { return memory_.window(); }
+  std::size_t memoryBytes() const { return memory_.memoryBytes(); }
+
+ private:
+  bool touchesSettled(const Index3& voxel, const ScanClock& clock) const;
+
+  EvidenceConfig config_;
+  BirthMemory memory_;
+};
+
+/// The 2D grid's answer, from ranges of heights a cell: ranging, previous range and resizing with a past
+/// (algorithm sections 2 and 5). Only the extension of a range is judged anew.
+class Newness2d {
+ public:
+  explicit Newness2d(const Config& config);
+
+  void shift(const Eigen::Isometry3d& odom_from_base);
+  /// As Newness3d::judge; an echo inside a known range shares that range's judgement.
+  Place judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& point, const ScanClock& clock,
+              const SightHistory& history);
+  void reset();
+  const GridWindow& window() const { return window_; }
+  std::size_t memoryBytes() const { return cells_.capacity() * sizeof(Cell); }
+
+ private:
+  struct Cell {
+    HeightRange settled;  ///< occupied for longer than the birth window
+    HeightRange arrived;  ///< new
+    HeightRange found;    ///< unobserved
+    std::uint32_t arrived_birth = 0, found_birth = 0;
+    std::uint32_t last_hit = 0, hit_before = 0;  ///< scans
+  };
+
+  Cell& cellAt(int x, int y) { return cells_[cells_layout_.slotOf(x, y)]; }
+  void settle(Cell& cell, const ScanClock& clock) const;
+  bool touchesSettled(int x, int y, float height) const;
+
+  EvidenceConfig config_;
+  GridWindow window_;
+  CellLayout cells_layout_;
+  std::vector<Cell> cells_;
+};
+
+/// True where enough scans since `since` [s] saw `point` free. `known`: the place is remembered, so it
+/// is forgotten only by being seen through; `settled`: careful sight wants more scans for it.
+bool wasFree(const EvidenceConfig& config, const SightHistory& history, const Eigen::Vector3f& point, double since,
+             bool known, bool settled);
+
+}  // namespace donex

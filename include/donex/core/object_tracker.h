@@ -1,0 +1,84 @@
+// Connected echoes followed over time: is this thing moving? (algorithm section 5, step 6)
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "donex/core/config.h"
+#include "donex/core/object.h"
+#include "donex/core/sight_history.h"
+
+namespace donex {
+
+/// A cluster of the present scan and what its echoes say.
+struct Candidate {
+  std::vector<std::uint32_t> echoes;  ///< indices into the scan
+  int new_echoes = 0;
+  int settled_echoes = 0;
+  Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();  ///< odometry frame [m]
+  bool dynamic = false;  ///< the verdict
+
+  Eigen::Vector3d center() const { return 0.5 * (low + high); }
+  Eigen::Vector3d extent() const { return high - low; }
+};
+
+/// Follows candidates from scan to scan. An object moves
+///  - where enough of its echoes are new: its front comes into space that was free;
+///  - where its former place is now seen free: its rear has receded. This finds a vehicle ahead at the
+///    ego vehicle's own speed, whose front nobody sees and whose rear only ever enters its own shadow.
+class ObjectTracker {
+ public:
+  explicit ObjectTracker(const ObjectConfig& config) : config_(config) {}
+
+  /// Enough of the candidate is new, taken alone.
+  bool isNew(const Candidate& candidate) const;
+
+  /// Decides `dynamic` of every candidate. `points`: the scan's echoes in the frame in which `history`
+  /// is asked [m]; its newest scan is the present one. `odom_from_points`: that frame in the odometry's.
+  void update(double stamp, const std::vector<Eigen::Vector3f>& points, const Eigen::Isometry3d& odom_from_points,
+              const SightHistory& history, std::vector<Candidate>& candidates);
+
+  /// Objects of the last scan that move, or moved since they are followed.
+  const std::vector<Object>& objects() const { return objects_; }
+
+  void reset();
+  std::size_t memoryBytes() const;
+
+ private:
+  /// Where some of an object's echoes were.
+  struct Trace {
+    double stamp;
+    std::vector<Eigen::Vector3d> in_odom;
+  };
+  struct Track {
+    std::uint32_t id = 0;
+    Eigen::Vector3d center, extent, velocity = Eigen::Vector3d::Zero();
+    double first_seen = 0.0, last_seen = 0.0, last_motion = 0.0;
+    int receding_scans = 0;  ///< in a row
+    bool dynamic = false, ever_dynamic = false;
+    std::deque<Trace> traces;
+  };
+  struct Pair {
+    double distance;
+    std::size_t track, candidate;
+  };
+
+  void match(double stamp, const std::vector<Candidate>& candidates);
+  void follow(Track& track, double stamp, const Candidate& candidate);
+  bool hasReceded(const Track& track, double stamp, const Eigen::Isometry3d& points_from_odom,
+                  const SightHistory& history) const;
+  void decide(Track& track, double stamp, Candidate& candidate, bool receded);
+  void leaveTrace(Track& track, double stamp, const Candidate& candidate, const std::vector<Eigen::Vector3f>& points,
+                  const Eigen::Isometry3d& odom_from_points) const;
+  void describe(const Track& track, double stamp, const Candidate& candidate,
+                const std::vector<Eigen::Vector3f>& points, const Eigen::Isometry3d& odom_from_points);
+
+  ObjectConfig config_;
+  std::vector<Track> tracks_;
+  std::vector<Pair> pairs_;
+  std::vector<int> track_of_;  ///< by candidate, -1 where it is followed for the first time
+  std::vector<Object> objects_;
+  std::uint32_t next_id_ = 1;
+};
+
+}  // namespace donex

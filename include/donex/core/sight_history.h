@@ -1,0 +1,55 @@
+// The last few scans' sights: was this place seen free lately?
+#pragma once
+
+#include <deque>
+
+#include "donex/core/scan.h"
+#include "donex/core/sight_image.h"
+
+namespace donex {
+
+/// Free evidence (algorithm section 5, step 1): "never hit before" is not "was free before".
+/// It is asked only of voxels that are newly hit, so a scan is kept as its sight image, nothing more.
+class SightHistory {
+ public:
+  struct Evidence {
+    int free = 0;      ///< scans that saw through the place
+    int surface = 0;   ///< scans that saw a surface there
+    int hidden = 0;    ///< scans that saw something before it
+  };
+
+  /// Keeps scans of the last `length` [s], at most one every `spacing` [s].
+  SightHistory(double length, double spacing, float margin, const SightImage::Reading& reading)
+      : length_(length), spacing_(spacing), margin_(margin), reading_(reading) {}
+
+  /// Takes what a scan saw. Stamps grow.
+  void add(const Scan& scan, const std::vector<std::uint8_t>& is_echo);
+
+  /// Fixes the frame of the following questions: window or grid coordinates [m] to odometry.
+  void askFrom(const Eigen::Isometry3d& odom_from_asked);
+
+  /// What the kept scans later than `since` [s] saw at `point`; stops early once `enough` of them saw it free.
+  Evidence ask(const Eigen::Vector3f& point, double since, int enough) const;
+
+  /// What the newest scan alone saw at `point`.
+  SightImage::Sight askNewest(const Eigen::Vector3f& point) const;
+
+  bool empty() const { return kept_.empty(); }
+  void reset() { kept_.clear(); }
+  std::size_t memoryBytes() const;
+
+ private:
+  struct Kept {
+    double stamp;
+    Eigen::Isometry3d sensor_from_odom;
+    Eigen::Isometry3f sensor_from_asked;
+    SightImage image;
+  };
+
+  double length_, spacing_;
+  float margin_;
+  SightImage::Reading reading_;
+  std::deque<Kept> kept_;  ///< oldest first
+};
+
+}  // namespace donex

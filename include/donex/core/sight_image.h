@@ -1,0 +1,57 @@
+// How far one scan saw in every direction: the space it proves to be free, read carefully.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace donex {
+
+/// The lines of sight of a scan as an image of ranges around the sensor (algorithm section 5, steps 1
+/// and 2). A pixel holds the nearest range of its direction; "free" needs a surface behind the asked
+/// point, never the mere absence of an echo (the sky, a dark car).
+///
+/// Careful reading, as one minimum per pixel:
+///  - between two beams the nearer one counts, up to `largest_gap` apart: sparse sensors leave no holes;
+///  - the nearest range among the pixels around counts: a line of sight that grazes a surface frees nothing there.
+class SightImage {
+ public:
+  struct Reading {
+    bool careful = true;
+    double largest_gap = 0.038;  ///< tangent of the angle between two beams that are read as neighbours
+  };
+
+  /// `echoes` in the sensor's frame [m]; those with `is_echo` 0 are left out.
+  void build(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo,
+             const Reading& reading);
+
+  enum class Sight { kUnknown, kFree, kSurface, kHidden };
+
+  /// What the scan says of a point of its sensor frame [m]: free where it saw at least `margin` [m]
+  /// beyond, surface within the margin, hidden behind one, or nothing known.
+  Sight at(const Eigen::Vector3f& point, float margin) const;
+
+  std::size_t memoryBytes() const;
+
+ private:
+  struct Pixel {
+    int column, row;
+    float range;
+  };
+
+  static bool project(const Eigen::Vector3f& point, Pixel& pixel);
+  void collect(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo);
+  void fillBetweenBeams(int largest_gap);
+  void fillBetweenColumns();
+  void erode();
+
+  using Range = std::uint16_t;  ///< [kRangeStep], rounded down; 0 where nothing is known
+
+  int first_row_ = 0, rows_ = 0;  ///< the part of the image that the sensor covers
+  std::vector<Range> nearest_;    ///< by column, then row
+  std::vector<Range> scratch_;
+  std::vector<Pixel> pixels_;
+};
+
+}  // namespace donex

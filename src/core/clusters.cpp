@@ -1,0 +1,102 @@
+#include "donex/core/clusters.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace donex {
+
+Clusters::Clusters(double reach, const Settings& settings)
+    : settings_(settings),
+      width_(2 * static_cast<int>(std::ceil(reach / settings.cell)) + 1),
+      layers_(static_cast<int>(std::ceil(settings.height / settings.cell)) + 1),
+      cell_at_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(width_) * static_cast<std::size_t>(layers_),
+               kNone) {}
+
+void Clusters::connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
+                       const std::vector<float>& heights, const std::vector<std::uint8_t>& member) {
+  fill(sensor, echoes, heights, member);
+  hangSkirt();
+  for (int cell = 0; cell < static_cast<int>(cells_.size()); ++cell) join(cell);
+  number();
+  for (const Cell& cell : cells_) cell_at_[static_cast<std::size_t>(indexOf(cell.x, cell.y, cell.z))] = kNone;
+}
+
+void Clusters::fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
+                    const std::vector<float>& heights, const std::vector<std::uint8_t>& member) {
+  const auto per_cell = static_cast<float>(1.0 / settings_.cell);
+  const auto highest = static_cast<float>(settings_.height);
+  cells_.clear();
+  skirt_.clear();
+  of_.assign(echoes.size(), kNone);
+  for (std::size_t i = 0; i < echoes.size(); ++i) {
+    const bool in_height = member[i] != kOut && heights[i] >= 0.0F && heights[i] <= highest;
+    if (!in_height) continue;
+    const int x = static_cast<int>(std::floor((echoes[i].x() - sensor.x()) * per_cell)) + width_ / 2;
+    const int y = static_cast<int>(std::floor((echoes[i].y() - sensor.y()) * per_cell)) + width_ / 2;
+    const int z = static_cast<int>(heights[i] * per_cell);
+    if (x < 0 || x >= width_ || y < 0 || y >= width_) continue;
+    if (member[i] == kSkirt) {
+      skirt_.push_back({static_cast<int>(i), x, y});
+      continue;
+    }
+    int& cell = cell_at_[static_cast<std::size_t>(indexOf(x, y, z))];
+    if (cell == kNone) {
+      cell = static_cast<int>(cells_.size());
+      cells_.push_back({x, y, z, cell});
+    }
+    of_[i] = cell;
+  }
+}
+
+void Clusters::hangSkirt() {
+  for (const auto& [echo, x, y] : skirt_) {
+    for (int z = 0; z <= std::min(1, layers_ - 1) && of_[static_cast<std::size_t>(echo)] == kNone; ++z) {
+      of_[static_cast<std::size_t>(echo)] = cell_at_[static_cast<std::size_t>(indexOf(x, y, z))];
+    }
+  }
+}
+
+int Clusters::rootOf(int cell) {
+  while (cells_[static_cast<std::size_t>(cell)].parent != cell) {
+    int& parent = cells_[static_cast<std::size_t>(cell)].parent;
+    parent = cells_[static_cast<std::size_t>(parent)].parent;
+    cell = parent;
+  }
+  return cell;
+}
+
+void Clusters::join(int cell) {
+  const Cell here = cells_[static_cast<std::size_t>(cell)];
+  const double cells_away = std::hypot(here.x - width_ / 2, here.y - width_ / 2);
+  const int across = std::max(1, static_cast<int>(std::ceil(cells_away * settings_.across_angle)));
+  const int up = std::max(1, static_cast<int>(std::ceil(cells_away * settings_.up_angle)));
+  for (int z = here.z; z <= std::min(here.z + up, layers_ - 1); ++z) {
+    // The half of the neighbourhood behind this cell finds it from there.
+    for (int y = std::max(here.y - across, 0); y <= std::min(here.y + across, width_ - 1); ++y) {
+      for (int x = std::max(here.x - across, 0); x <= std::min(here.x + across, width_ - 1); ++x) {
+        const int other = cell_at_[static_cast<std::size_t>(indexOf(x, y, z))];
+        if (other == kNone || other == cell) continue;
+        cells_[static_cast<std::size_t>(rootOf(other))].parent = rootOf(cell);
+      }
+    }
+  }
+}
+
+void Clusters::number() {
+  // Numbered in the order of their first echoes: independent of how the cells were joined.
+  number_of_root_.assign(cells_.size(), kNone);
+  count_ = 0;
+  for (int& of : of_) {
+    if (of == kNone) continue;
+    int& number = number_of_root_[static_cast<std::size_t>(rootOf(of))];
+    if (number == kNone) number = count_++;
+    of = number;
+  }
+}
+
+std::size_t Clusters::memoryBytes() const {
+  return (cell_at_.capacity() + of_.capacity() + number_of_root_.capacity()) * sizeof(int) +
+         cells_.capacity() * sizeof(Cell);
+}
+
+}  // namespace donex

@@ -1,0 +1,169 @@
+#include "donex/core/object_tracker.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "donex/core/oriented_box.h"
+
+namespace donex {
+namespace {
+
+constexpr double kLargestStep = 4.0;       // [m] between two scans, before a velocity is known
+constexpr double kFollowedStep = 1.5;      // [m] off the predicted place
+constexpr double kLost = 0.6;              // [s] unseen for longer: forgotten
+constexpr double kLookBack = 0.3;          // [s] an object's former place is asked for after this long
+constexpr std::size_t kTracePoints = 48;
+constexpr double kLongest = 25.0;          // [m] longer things are no objects: walls, hedges
+constexpr double kSmoothing = 0.3;         // share of the newest displacement in the velocity
+constexpr double kLeastShare = 0.15;       // of all echoes that must be new
+constexpr int kRecedingScans = 2;
+
+bool alike(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return ((a - b).array().abs() <= (0.5 * a.cwiseMax(b)).array() + 0.7).all();
+}
+
+}  // namespace
+
+bool ObjectTracker::isNew(const Candidate& candidate) const {
+  const double fresh = candidate.new_echoes;
+  const bool enough = candidate.new_echoes >= config_.min_echoes;
+  const bool outweighs = fresh > config_.new_share * (fresh + candidate.settled_echoes);
+  return enough && outweighs && fresh > kLeastShare * static_cast<double>(candidate.echoes.size());
+}
+
+void ObjectTracker::update(double stamp, const std::vector<Eigen::Vector3f>& points,
+                           const Eigen::Isometry3d& odom_from_points, const SightHistory& history,
+                           std::vector<Candidate>& candidates) {
+  objects_.clear();
+  match(stamp, candidates);
+  const Eigen::Isometry3d points_from_odom = odom_from_points.inverse();
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    Candidate& candidate = candidates[i];
+    if (candidate.extent().maxCoeff() > kLongest) continue;
+    if (track_of_[i] < 0) {
+      track_of_[i] = static_cast<int>(tracks_.size());
+      tracks_.emplace_back();
+      tracks_.back().id = next_id_++;
+      tracks_.back().first_seen = stamp;
+      tracks_.back().last_seen = stamp;
+      tracks_.back().center = candidate.center();
+      tracks_.back().extent = candidate.extent();
+    }
+    Track& track = tracks_[static_cast<std::size_t>(track_of_[i])];
+    follow(track, stamp, candidate);
+    decide(track, stamp, candidate, hasReceded(track, stamp, points_from_odom, history));
+    leaveTrace(track, stamp, candidate, points, odom_from_points);
+    if (track.ever_dynamic) describe(track, stamp, candidate, points, odom_from_points);
+  }
+  const auto is_lost = [&](const Track& track) { return track.last_seen < stamp - kLost; };
+  tracks_.erase(std::remove_if(tracks_.begin(), tracks_.end(), is_lost), tracks_.end());
+}
+
+void ObjectTracker::match(double stamp, const std::vector<Candidate>& candidates) {
+  pairs_.clear();
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    const Track& track = tracks_[t];
+    const Eigen::Vector3d predicted = track.center + track.velocity * (stamp - track.last_seen);
+    const double step = track.first_seen < track.last_seen ? kFollowedStep : kLargestStep;
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+      const double distance = (candidates[c].center() - predicted).norm();
+      if (distance > step || !alike(track.extent, candidates[c].extent())) continue;
+      pairs_.push_back({distance, t, c});
+    }
+  }
+  // The nearest pairs first: what stands still finds itself and leaves the rest to what moves.
+  std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
+    return std::tie(a.distance, a.track, a.candidate) < std::tie(b.distance, b.track, b.candidate);
+  });
+  track_of_.assign(candidates.size(), -1);
+  std::vector<bool> taken(tracks_.size(), false);
+  for (const Pair& pair : pairs_) {
+    if (taken[pair.track] || track_of_[pair.candidate] >= 0) continue;
+    taken[pair.track] = true;
+    track_of_[pair.candidate] = static_cast<int>(pair.track);
+  }
+}
+
+void ObjectTracker::follow(Track& track, double stamp, const Candidate& candidate) {
+  const double elapsed = stamp - track.last_seen;
+  if (elapsed > 0.0) {
+    const Eigen::Vector3d velocity = (candidate.center() - track.center) / elapsed;
+    const bool is_second = track.last_seen <= track.first_seen;
+    track.velocity = is_second ? velocity : Eigen::Vector3d((1.0 - kSmoothing) * track.velocity + kSmoothing * velocity);
+  }
+  track.center = candidate.center();
+  track.extent = candidate.extent();
+  track.last_seen = stamp;
+}
+
+bool ObjectTracker::hasReceded(const Track& track, double stamp, const Eigen::Isometry3d& points_from_odom,
+                               const SightHistory& history) const {
+  const Trace* former = nullptr;
+  for (const Trace& trace : track.traces) {
+    if (trace.stamp <= stamp - kLookBack) former = &trace;
+  }
+  if (former == nullptr) return false;
+  int free = 0, surface = 0;
+  for (const Eigen::Vector3d& point : former->in_odom) {
+    const SightImage::Sight sight = history.askNewest((points_from_odom * point).cast<float>());
+    free += sight == SightImage::Sight::kFree ? 1 : 0;
+    surface += sight == SightImage::Sight::kSurface ? 1 : 0;
+  }
+  return free >= config_.min_echoes && free > surface;
+}
+
+void ObjectTracker::decide(Track& track, double stamp, Candidate& candidate, bool receded) {
+  const bool mostly_settled = 2 * static_cast<std::size_t>(candidate.settled_echoes) > candidate.echoes.size();
+  track.receding_scans = receded && !mostly_settled ? track.receding_scans + 1 : 0;
+  const bool moves = isNew(candidate) || track.receding_scans >= kRecedingScans;
+  if (moves) track.last_motion = stamp;
+  const bool just_stopped = track.dynamic && stamp - track.last_motion <= config_.stop_time;
+  track.dynamic = moves || just_stopped;
+  track.ever_dynamic = track.ever_dynamic || track.dynamic;
+  candidate.dynamic = track.dynamic;
+}
+
+void ObjectTracker::leaveTrace(Track& track, double stamp, const Candidate& candidate,
+                               const std::vector<Eigen::Vector3f>& points,
+                               const Eigen::Isometry3d& odom_from_points) const {
+  Trace trace;
+  while (track.traces.size() > 1 && track.traces[1].stamp <= stamp - kLookBack) {
+    trace = std::move(track.traces.front());
+    track.traces.pop_front();
+  }
+  trace.stamp = stamp;
+  trace.in_odom.clear();
+  const std::size_t stride = candidate.echoes.size() / kTracePoints + 1;
+  for (std::size_t i = 0; i < candidate.echoes.size(); i += stride) {
+    trace.in_odom.push_back(odom_from_points * points[candidate.echoes[i]].cast<double>());
+  }
+  track.traces.push_back(std::move(trace));
+}
+
+void ObjectTracker::describe(const Track& track, double stamp, const Candidate& candidate,
+                             const std::vector<Eigen::Vector3f>& points, const Eigen::Isometry3d& odom_from_points) {
+  Object object;
+  object.id = track.id;
+  object.velocity = track.velocity;
+  object.dynamic = track.dynamic;
+  object.age = stamp - track.first_seen;
+  object.echoes = static_cast<std::uint32_t>(candidate.echoes.size());
+  fitBox(candidate.echoes, points, odom_from_points, track.velocity, object);
+  objects_.push_back(object);
+}
+
+void ObjectTracker::reset() {
+  tracks_.clear();
+  objects_.clear();
+  next_id_ = 1;
+}
+
+std::size_t ObjectTracker::memoryBytes() const {
+  std::size_t bytes = tracks_.capacity() * sizeof(Track) + pairs_.capacity() * sizeof(Pair);
+  for (const Track& track : tracks_) {
+    for (const Trace& trace : track.traces) bytes += trace.in_odom.capacity() * sizeof(Eigen::Vector3d);
+  }
+  return bytes;
+}
+
+}  // namespace donex

@@ -1,0 +1,140 @@
+#include "donex/core/sight_image.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace donex {
+namespace {
+
+constexpr int kColumns = 1024;           // a power of two: azimuth wraps by masking
+constexpr float kRowHeight = 0.006F;     // tangent of the elevation
+constexpr float kSteepest = 1.2F;        // tangent beyond which nothing is asked
+constexpr float kRangeStep = 0.02F;      // [m]
+constexpr float kNearest = 0.3F;         // [m] nothing is asked nearer to the sensor's axis
+constexpr float kPi = 3.14159265F;
+
+/// atan2 to 1e-4 rad, the same on every machine; monotone within an octant, which is all a column needs.
+float azimuthOf(float y, float x) {
+  const float ax = std::abs(x), ay = std::abs(y);
+  const float a = std::min(ax, ay) / std::max(ax, ay);
+  const float s = a * a;
+  float angle = ((-0.0464964749F * s + 0.15931422F) * s - 0.327622764F) * s * a + a;
+  if (ay > ax) angle = 0.5F * kPi - angle;
+  if (x < 0.0F) angle = kPi - angle;
+  return y < 0.0F ? -angle : angle;
+}
+
+}  // namespace
+
+bool SightImage::project(const Eigen::Vector3f& point, Pixel& pixel) {
+  const float horizontal = std::sqrt(point.x() * point.x() + point.y() * point.y());
+  if (!(horizontal > kNearest)) return false;
+  const float slope = point.z() / horizontal;
+  if (!(std::abs(slope) < kSteepest)) return false;
+  const float turn = (azimuthOf(point.y(), point.x()) + kPi) * (kColumns / (2.0F * kPi));
+  pixel.column = static_cast<int>(turn) & (kColumns - 1);
+  pixel.row = static_cast<int>((slope + kSteepest) / kRowHeight);
+  pixel.range = std::sqrt(horizontal * horizontal + point.z() * point.z());
+  return true;
+}
+
+void SightImage::build(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo,
+                       const Reading& reading) {
+  collect(echoes, is_echo);
+  if (!reading.careful) return;
+  fillBetweenBeams(static_cast<int>(reading.largest_gap / static_cast<double>(kRowHeight)));
+  fillBetweenColumns();
+  erode();
+}
+
+void SightImage::collect(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo) {
+  pixels_.clear();
+  int lowest = std::numeric_limits<int>::max(), highest = -1;
+  for (std::size_t i = 0; i < echoes.size(); ++i) {
+    Pixel pixel;
+    if (is_echo[i] == 0 || !project(echoes[i], pixel)) continue;
+    lowest = std::min(lowest, pixel.row);
+    highest = std::max(highest, pixel.row);
+    pixels_.push_back(pixel);
+  }
+  first_row_ = highest < 0 ? 0 : lowest;
+  rows_ = highest < 0 ? 0 : highest - lowest + 1;
+  nearest_.assign(static_cast<std::size_t>(kColumns) * static_cast<std::size_t>(rows_), 0);
+  for (const Pixel& pixel : pixels_) {
+    const float steps = std::clamp(pixel.range / kRangeStep, 1.0F, 65535.0F);
+    const auto range = static_cast<Range>(steps);
+    Range& nearest = nearest_[static_cast<std::size_t>(pixel.column * rows_ + pixel.row - first_row_)];
+    if (nearest == 0 || range < nearest) nearest = range;
+  }
+}
+
+void SightImage::fillBetweenBeams(int largest_gap) {
+  for (int c = 0; c < kColumns; ++c) {
+    Range* column = nearest_.data() + static_cast<std::ptrdiff_t>(c) * rows_;
+    int last = -1;
+    for (int row = 0; row < rows_; ++row) {
+      if (column[row] == 0) continue;
+      const bool neighbours = last >= 0 && row - last <= largest_gap;
+      if (neighbours) std::fill(column + last + 1, column + row, std::min(column[last], column[row]));
+      last = row;
+    }
+  }
+}
+
+void SightImage::fillBetweenColumns() {
+  // Only single columns: a sensor whose azimuth steps are a little wider than ours.
+  scratch_ = nearest_;
+  for (int c = 0; c < kColumns; ++c) {
+    const Range* left = scratch_.data() + static_cast<std::ptrdiff_t>((c - 1) & (kColumns - 1)) * rows_;
+    const Range* right = scratch_.data() + static_cast<std::ptrdiff_t>((c + 1) & (kColumns - 1)) * rows_;
+    Range* column = nearest_.data() + static_cast<std::ptrdiff_t>(c) * rows_;
+    for (int row = 0; row < rows_; ++row) {
+      const bool between = column[row] == 0 && left[row] != 0 && right[row] != 0;
+      if (between) column[row] = std::min(left[row], right[row]);
+    }
+  }
+}
+
+void SightImage::erode() {
+  // Unknown pixels around say nothing: as unsigned, 0 - 1 is the largest range, so min passes them by.
+  const auto nearer = [](Range a, Range b) {
+    return static_cast<Range>(std::min<Range>(static_cast<Range>(a - 1), static_cast<Range>(b - 1)) + 1);
+  };
+  scratch_.resize(nearest_.size());
+  for (int c = 0; c < kColumns; ++c) {
+    const Range* column = nearest_.data() + static_cast<std::ptrdiff_t>(c) * rows_;
+    Range* result = scratch_.data() + static_cast<std::ptrdiff_t>(c) * rows_;
+    for (int row = 0; row < rows_; ++row) {
+      const Range below = row > 0 ? column[row - 1] : Range{0}, above = row + 1 < rows_ ? column[row + 1] : Range{0};
+      result[row] = nearer(column[row], nearer(below, above));
+    }
+  }
+  for (int c = 0; c < kColumns; ++c) {
+    const Range* left = scratch_.data() + static_cast<std::ptrdiff_t>((c - 1) & (kColumns - 1)) * rows_;
+    const Range* right = scratch_.data() + static_cast<std::ptrdiff_t>((c + 1) & (kColumns - 1)) * rows_;
+    const Range* middle = scratch_.data() + static_cast<std::ptrdiff_t>(c) * rows_;
+    Range* column = nearest_.data() + static_cast<std::ptrdiff_t>(c) * rows_;
+    for (int row = 0; row < rows_; ++row) {
+      if (column[row] != 0) column[row] = nearer(middle[row], nearer(left[row], right[row]));
+    }
+  }
+}
+
+SightImage::Sight SightImage::at(const Eigen::Vector3f& point, float margin) const {
+  Pixel pixel;
+  if (!project(point, pixel)) return Sight::kUnknown;
+  const int row = pixel.row - first_row_;
+  if (row < 0 || row >= rows_) return Sight::kUnknown;
+  const Range nearest = nearest_[static_cast<std::size_t>(pixel.column * rows_ + row)];
+  if (nearest == 0) return Sight::kUnknown;
+  const float beyond = static_cast<float>(nearest) * kRangeStep - pixel.range;
+  if (beyond > margin) return Sight::kFree;
+  return beyond > -margin ? Sight::kSurface : Sight::kHidden;
+}
+
+std::size_t SightImage::memoryBytes() const {
+  return (nearest_.capacity() + scratch_.capacity()) * sizeof(Range) + pixels_.capacity() * sizeof(Pixel);
+}
+
+}  // namespace donex
