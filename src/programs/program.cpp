@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -61,9 +62,9 @@ ConfigOptions::ConfigOptions(CLI::App& app) {
   app.add_option("--config", file_, "a file of parameters, as the node reads it");
   app.add_option("--method", method_, "the classifier, over --config");
   app.add_option("--voxel-size", voxel_size_, "edge length of a voxel [m], over --config");
+  // Joined, not a list: a list would swallow the positional arguments behind it.
   app.add_option("--set", settings_, "name=value: any parameter, over all others; may be repeated")
-      ->type_size(1)
-      ->expected(-1);
+      ->multi_option_policy(CLI::MultiOptionPolicy::Join);
 }
 
 Config ConfigOptions::config() const {
@@ -71,7 +72,8 @@ Config ConfigOptions::config() const {
   std::vector<std::string> settings;
   if (!method_.empty()) settings.push_back("method=" + method_);
   if (!voxel_size_.empty()) settings.push_back("voxel_size=" + voxel_size_);
-  settings.insert(settings.end(), settings_.begin(), settings_.end());
+  std::istringstream joined(settings_);
+  for (std::string setting; std::getline(joined, setting);) settings.push_back(setting);
   applySettings(config, settings);
   return config;
 }

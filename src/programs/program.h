@@ -37,7 +37,7 @@ class ConfigOptions {
   std::string file_;
   std::string method_;
   std::string voxel_size_;
-  std::vector<std::string> settings_;
+  std::string settings_;  ///< a line each
 };
 
 /// A bar on stderr; says nothing where that is no terminal.

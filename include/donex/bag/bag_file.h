@@ -1,0 +1,44 @@
+// Opening bags and writing them whole or not at all.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <rosbag/bag.h>
+
+#include "donex/io/data_error.h"
+
+namespace donex {
+
+/// Opens a bag for reading. Throws DataError that says what is wrong: missing, not a bag, cut off.
+void openBag(const std::filesystem::path& file, rosbag::Bag& bag);
+
+/// How the chunks of a bag are compressed (the first one speaks for all); not at all where there is no chunk.
+/// The rosbag library tells this of no bag it reads. `file` must be a bag.
+rosbag::CompressionType compressionOf(const std::filesystem::path& file);
+
+/// "none", "lz4" or "bz2"; throws std::invalid_argument for another text.
+rosbag::CompressionType parseCompression(const std::string& name);
+
+/// Writes a bag under a temporary name beside its own; commit() gives it its own name. Never half a bag.
+class BagWriter {
+ public:
+  /// Throws DataError when the file cannot be created.
+  BagWriter(std::filesystem::path file, rosbag::CompressionType compression);
+  /// Without commit() nothing remains.
+  ~BagWriter();
+  BagWriter(const BagWriter&) = delete;
+  BagWriter& operator=(const BagWriter&) = delete;
+
+  rosbag::Bag& bag() { return bag_; }
+
+  /// Throws DataError when it cannot be written to the end.
+  void commit();
+
+ private:
+  std::filesystem::path file_;
+  std::filesystem::path temporary_;
+  rosbag::Bag bag_;
+};
+
+}  // namespace donex

@@ -1,0 +1,126 @@
+#include "donex/bag/bag_file.h"
+
+#include <unistd.h>
+
+#include <cstdint>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace donex {
+namespace fs = std::filesystem;
+namespace {
+
+using Fields = std::map<std::string, std::string>;
+
+constexpr char kChunkRecord = 5;
+constexpr char kBagHeaderRecord = 3;
+constexpr std::uint32_t kMostHeaderBytes = 1U << 20U;  // real ones are below 200: more is rubbish
+
+std::optional<std::uint32_t> readLength(std::istream& stream) {
+  std::uint32_t length = 0;
+  if (!stream.read(reinterpret_cast<char*>(&length), sizeof(length))) return std::nullopt;
+  return length;
+}
+
+/// name=value pairs, each after its length.
+Fields parseFields(const std::string& header) {
+  Fields fields;
+  for (std::size_t at = 0; at + sizeof(std::uint32_t) <= header.size();) {
+    std::uint32_t length = 0;
+    header.copy(reinterpret_cast<char*>(&length), sizeof(length), at);
+    const std::string field = header.substr(at + sizeof(length), length);
+    const std::size_t equals = field.find('=');
+    if (equals != std::string::npos) fields[field.substr(0, equals)] = field.substr(equals + 1);
+    at += sizeof(length) + length;
+  }
+  return fields;
+}
+
+/// The header of the next record, whose data is skipped.
+std::optional<Fields> readRecord(std::istream& stream) {
+  const auto header_length = readLength(stream);
+  if (!header_length || *header_length > kMostHeaderBytes) return std::nullopt;
+  std::string header(*header_length, '\0');
+  if (!stream.read(header.data(), static_cast<std::streamsize>(header.size()))) return std::nullopt;
+  const auto data_length = readLength(stream);
+  if (!data_length) return std::nullopt;
+  stream.seekg(*data_length, std::ios::cur);
+  return parseFields(header);
+}
+
+}  // namespace
+
+void openBag(const fs::path& file, rosbag::Bag& bag) {
+  const std::string name = file.string();
+  if (!fs::exists(file)) throw DataError(name + ": does not exist");
+  if (!fs::is_regular_file(file)) throw DataError(name + ": is not a file");
+  try {
+    bag.open(name, rosbag::bagmode::Read);
+  } catch (const rosbag::BagUnindexedException&) {
+    throw DataError(name + ": has no index, its recording was cut off ('rosbag reindex' may save it)");
+  } catch (const rosbag::BagFormatException& error) {
+    throw DataError(fmt::format("{}: is not a bag or is cut off ({})", name, error.what()));
+  } catch (const std::exception& error) {
+    throw DataError(fmt::format("{}: cannot be read as a bag ({})", name, error.what()));
+  }
+}
+
+rosbag::CompressionType compressionOf(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string version;
+  std::getline(stream, version);
+  while (const auto fields = readRecord(stream)) {
+    const auto op = fields->find("op");
+    if (op == fields->end() || op->second.size() != 1) break;
+    const auto compression = fields->find("compression");
+    const bool is_chunk = op->second[0] == kChunkRecord && compression != fields->end();
+    if (is_chunk) return parseCompression(compression->second);
+    if (op->second[0] != kBagHeaderRecord) break;  // the chunks come first
+  }
+  return rosbag::compression::Uncompressed;
+}
+
+rosbag::CompressionType parseCompression(const std::string& name) {
+  if (name == "none") return rosbag::compression::Uncompressed;
+  if (name == "lz4") return rosbag::compression::LZ4;
+  if (name == "bz2") return rosbag::compression::BZ2;
+  throw std::invalid_argument("compression is " + name + ", must be one of none, lz4, bz2");
+}
+
+BagWriter::BagWriter(fs::path file, rosbag::CompressionType compression)
+    // The process's number: two runs that write the same file don't write into each other.
+    : file_(std::move(file)), temporary_(fmt::format("{}.{}.part", file_.string(), getpid())) {
+  try {
+    bag_.open(temporary_.string(), rosbag::bagmode::Write);
+    bag_.setCompression(compression);
+  } catch (const std::exception& error) {
+    throw DataError(fmt::format("{}: cannot be written ({})", file_.string(), error.what()));
+  }
+}
+
+BagWriter::~BagWriter() {
+  if (temporary_.empty()) return;
+  try {
+    bag_.close();
+  } catch (const std::exception&) {
+    // A full disk, most likely; what is there is removed anyway.
+  }
+  std::error_code ignored;
+  fs::remove(temporary_, ignored);
+}
+
+void BagWriter::commit() {
+  try {
+    bag_.close();
+    fs::rename(temporary_, file_);
+  } catch (const std::exception& error) {
+    throw DataError(fmt::format("{}: cannot be written ({})", file_.string(), error.what()));
+  }
+  temporary_.clear();
+}
+
+}  // namespace donex

@@ -1,0 +1,154 @@
+#include "donex/bag/sequence_bag.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include <boost/make_shared.hpp>
+#include <fmt/format.h>
+#include <nav_msgs/Odometry.h>
+#include <tf2_msgs/TFMessage.h>
+
+#include "donex/bag/bag_file.h"
+
+namespace donex {
+namespace {
+
+constexpr const char* kOdomFrame = "odom";
+constexpr const char* kBaseFrame = "base_link";
+constexpr const char* kSensorFrame = "velodyne";
+
+geometry_msgs::Quaternion toMessage(const Eigen::Quaterniond& q) {
+  geometry_msgs::Quaternion message;
+  message.x = q.x();
+  message.y = q.y();
+  message.z = q.z();
+  message.w = q.w();
+  return message;
+}
+
+/// Point or Vector3.
+template <class Message>
+Message toMessage(const Eigen::Vector3d& v) {
+  Message message;
+  message.x = v.x();
+  message.y = v.y();
+  message.z = v.z();
+  return message;
+}
+
+nav_msgs::Odometry toOdometry(const OdometryPoint& point) {
+  nav_msgs::Odometry message;
+  message.header.stamp = ros::Time(point.stamp);
+  message.header.frame_id = kOdomFrame;
+  message.child_frame_id = kBaseFrame;
+  message.pose.pose.position = toMessage<geometry_msgs::Point>(point.odom_from_base.position);
+  message.pose.pose.orientation = toMessage(point.odom_from_base.orientation);
+  message.twist.twist.linear = toMessage<geometry_msgs::Vector3>(point.twist.linear);
+  message.twist.twist.angular = toMessage<geometry_msgs::Vector3>(point.twist.angular);
+  return message;
+}
+
+tf2_msgs::TFMessage toTransform(double stamp, const std::string& parent, const std::string& child, const Pose& pose) {
+  tf2_msgs::TFMessage message;
+  message.transforms.resize(1);
+  geometry_msgs::TransformStamped& transform = message.transforms.front();
+  transform.header.stamp = ros::Time(stamp);
+  transform.header.frame_id = parent;
+  transform.child_frame_id = child;
+  transform.transform.translation = toMessage<geometry_msgs::Vector3>(pose.position);
+  transform.transform.rotation = toMessage(pose.orientation);
+  return message;
+}
+
+/// A player publishes a topic of such a connection latched: also late listeners learn the mounting.
+boost::shared_ptr<ros::M_string> latchedTransforms() {
+  namespace traits = ros::message_traits;
+  auto header = boost::make_shared<ros::M_string>();
+  (*header)["type"] = traits::DataType<tf2_msgs::TFMessage>::value();
+  (*header)["md5sum"] = traits::MD5Sum<tf2_msgs::TFMessage>::value();
+  (*header)["message_definition"] = traits::Definition<tf2_msgs::TFMessage>::value();
+  (*header)["topic"] = "/tf_static";
+  (*header)["latching"] = "1";
+  return header;
+}
+
+void writeOdometry(rosbag::Bag& bag, const OdometryPoint& point) {
+  const ros::Time stamp(point.stamp);
+  bag.write("/odom", stamp, toOdometry(point));
+  bag.write("/tf", stamp, toTransform(point.stamp, kOdomFrame, kBaseFrame, point.odom_from_base));
+}
+
+/// Whole seconds, so that the fractions of the stamps stay.
+double shiftFor(double earliest) { return earliest >= 1.0 ? 0.0 : 1.0 - std::floor(earliest); }
+
+std::vector<OdometryPoint> odometryOf(const SequenceReader& sequence, const OdometryRhythm& rhythm) {
+  std::vector<double> stamps;
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < sequence.size(); ++i) {
+    stamps.push_back(sequence.stamp(i));
+    poses.push_back(sequence.pose(i));
+  }
+  return odometryAlong(stamps, poses, rhythm);
+}
+
+void checkLastStamp(double stamp, const std::filesystem::path& directory) {
+  constexpr double kEndOfTime = 4294967295.0;  // seconds are 32 bits in ROS
+  if (stamp < kEndOfTime) return;
+  throw DataError(fmt::format("{}: the time {} s is beyond what ROS can hold", directory.string(), stamp));
+}
+
+}  // namespace
+
+sensor_msgs::PointCloud2Ptr toCloud(const SequenceScan& scan) {
+  constexpr std::uint32_t kFloats = 4;
+  const auto cloud = boost::make_shared<sensor_msgs::PointCloud2>();
+  cloud->header.stamp = ros::Time(scan.stamp);
+  cloud->header.frame_id = kSensorFrame;
+  cloud->height = 1;
+  cloud->width = static_cast<std::uint32_t>(scan.echoes.size());
+  cloud->point_step = kFloats * sizeof(float);
+  cloud->row_step = cloud->point_step * cloud->width;
+  cloud->is_dense = std::all_of(scan.echoes.begin(), scan.echoes.end(), [](const auto& e) { return e.allFinite(); });
+  for (const char* name : {"x", "y", "z", "intensity"}) {
+    sensor_msgs::PointField field;
+    field.name = name;
+    field.offset = static_cast<std::uint32_t>(cloud->fields.size() * sizeof(float));
+    field.datatype = sensor_msgs::PointField::FLOAT32;
+    field.count = 1;
+    cloud->fields.push_back(field);
+  }
+  cloud->data.resize(cloud->row_step);
+  for (std::size_t i = 0; i < scan.echoes.size(); ++i) {
+    const Eigen::Vector4f row(scan.echoes[i].x(), scan.echoes[i].y(), scan.echoes[i].z(), scan.intensities[i]);
+    std::memcpy(cloud->data.data() + i * sizeof(row), row.data(), sizeof(row));
+  }
+  return cloud;
+}
+
+SequenceBagSummary writeSequenceBag(const SequenceReader& sequence, const std::filesystem::path& file,
+                                    const SequenceBagOptions& options, const std::function<void()>& progress) {
+  auto odometry = odometryOf(sequence, options.odometry);
+  const double earliest = std::min(sequence.stamp(0), odometry.front().stamp);
+  const SequenceBagSummary summary{sequence.size(), odometry.size(), shiftFor(earliest)};
+  for (OdometryPoint& point : odometry) point.stamp += summary.shift;
+  checkLastStamp(odometry.back().stamp, sequence.directory());
+
+  BagWriter writer(file, options.compression);
+  const double start = earliest + summary.shift;
+  writer.bag().write("/tf_static", ros::Time(start), toTransform(start, kBaseFrame, kSensorFrame, Pose()),
+                     latchedTransforms());
+  auto next = odometry.begin();
+  for (std::size_t i = 0; i < sequence.size(); ++i) {
+    SequenceScan scan = sequence.scan(i);
+    scan.stamp += summary.shift;
+    for (; next != odometry.end() && next->stamp <= scan.stamp; ++next) writeOdometry(writer.bag(), *next);
+    writer.bag().write("/points", ros::Time(scan.stamp), toCloud(scan));
+    progress();
+  }
+  for (; next != odometry.end(); ++next) writeOdometry(writer.bag(), *next);
+  writer.commit();
+  return summary;
+}
+
+}  // namespace donex

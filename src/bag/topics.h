@@ -1,0 +1,21 @@
+// Which topics of a bag are meant.
+#pragma once
+
+#include <string>
+
+#include <rosbag/view.h>
+
+namespace donex {
+
+/// The topic `wanted` (with or without a leading slash), which must be of type `datatype`; for an empty `wanted` the
+/// only topic of that type. Throws DataError that lists the bag's topics; `file` and `option` are for it.
+std::string chooseTopic(rosbag::View& view, const std::string& wanted, const std::string& datatype,
+                        const std::string& file, const std::string& option);
+
+/// Throws DataError when the bag has the topic already.
+void requireNewTopic(rosbag::View& view, const std::string& topic, const std::string& file);
+
+/// Names are compared as absolute ones.
+std::string absoluteTopic(const std::string& topic);
+
+}  // namespace donex
