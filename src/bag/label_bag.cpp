@@ -78,9 +78,8 @@ void Labeler::write(const LabeledScan& scan) {
 }
 
 void Labeler::addTransforms(const rosbag::MessageInstance& message, bool are_static) {
-  for (const auto& transform : parse<tf2_msgs::TFMessage>(message)->transforms) {
-    tf_.setTransform(transform, "bag", are_static);
-  }
+  const auto parsed = parse<tf2_msgs::TFMessage>(message);
+  for (const auto& transform : parsed->transforms) tf_.setTransform(transform, "bag", are_static);
 }
 
 void Labeler::feed(const rosbag::MessageInstance& message) {
