@@ -9,9 +9,9 @@
 namespace donex::simulation {
 namespace {
 
-constexpr int kMask = GroundWindow::kCells - 1;
 constexpr int kMoveCells = 16;   // the window follows in steps
-constexpr float kStep = 0.2f;    // [m]
+constexpr float kStep = 0.2f;          // [m]
+constexpr float kStepGrowth = 0.008f;  // of the distance: far away the rays themselves lie further apart
 constexpr float kSteepest = 0.75f;  // no slope of the samples is steeper: a kerb's height over one cell
 constexpr float kNearest = 0.3f;    // [m]
 
@@ -20,17 +20,14 @@ int cellOf(double coordinate) { return static_cast<int>(std::floor(coordinate / 
 }  // namespace
 
 GroundWindow::GroundWindow(const Ground& ground)
-    : ground_(ground), samples_(static_cast<std::size_t>(kCells) * kCells) {}
-
-std::size_t GroundWindow::slot(int column, int row) const {
-  return static_cast<std::size_t>(row & kMask) * kCells + static_cast<std::size_t>(column & kMask);
-}
+    : ground_(ground), heights_(static_cast<std::size_t>(kCells) * kCells), labels_(heights_.size()) {}
 
 void GroundWindow::sampleBlock(int first_column, int first_row, int columns, int rows) {
   for (int row = first_row; row < first_row + rows; ++row) {
     for (int column = first_column; column < first_column + columns; ++column) {
       const GroundPoint point = ground_.at(kCell * Eigen::Vector2d(column, row));
-      samples_[slot(column, row)] = {static_cast<float>(point.height), point.label};
+      heights_[slot(column, row)] = static_cast<float>(point.height);
+      labels_[slot(column, row)] = static_cast<std::uint8_t>(point.label);
     }
   }
 }
@@ -56,14 +53,15 @@ void GroundWindow::moveTo(const Eigen::Vector2d& center) {
 }
 
 float GroundWindow::heightAtCell(float u, float v) const {
-  const float column = std::floor(u);
-  const float row = std::floor(v);
-  const int i = static_cast<int>(column) + first_column_;
-  const int j = static_cast<int>(row) + first_row_;
-  const float a = u - column;
-  const float b = v - row;
-  const float low = samples_[slot(i, j)].height * (1.0f - a) + samples_[slot(i + 1, j)].height * a;
-  const float high = samples_[slot(i, j + 1)].height * (1.0f - a) + samples_[slot(i + 1, j + 1)].height * a;
+  // Never negative inside the window: truncation is the floor.
+  const int column = static_cast<int>(u);
+  const int row = static_cast<int>(v);
+  const int i = column + first_column_;
+  const int j = row + first_row_;
+  const float a = u - static_cast<float>(column);
+  const float b = v - static_cast<float>(row);
+  const float low = heights_[slot(i, j)] * (1.0f - a) + heights_[slot(i + 1, j)] * a;
+  const float high = heights_[slot(i, j + 1)] * (1.0f - a) + heights_[slot(i + 1, j + 1)] * a;
   return low * (1.0f - b) + high * b;
 }
 
@@ -72,7 +70,7 @@ float GroundWindow::height(double x, double y) const {
 }
 
 std::uint32_t GroundWindow::label(double x, double y) const {
-  return samples_[slot(cellOf(x + 0.5 * kCell), cellOf(y + 0.5 * kCell))].label;
+  return labels_[slot(cellOf(x + 0.5 * kCell), cellOf(y + 0.5 * kCell))];
 }
 
 Eigen::Vector3f GroundWindow::normal(double x, double y) const {
@@ -82,36 +80,37 @@ Eigen::Vector3f GroundWindow::normal(double x, double y) const {
   return Eigen::Vector3f(-across, -along, 1.0f).normalized();
 }
 
+/// `origin` and `direction` level in cells, upright in metres. The parameter, or kMiss.
+float GroundWindow::enter(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float from) const {
+  const float fastest_approach = std::max(0.2f, kSteepest - direction.z());
+  float before = 0.0f;
+  float before_r = from;
+  for (float r = from; r < static_cast<float>(kReach);) {
+    const Eigen::Vector3f at = origin + r * direction;
+    const float above = at.z() - heightAtCell(at.x(), at.y());
+    if (above <= 0.0f) return before > 0.0f ? before_r + (r - before_r) * before / (before - above) : r;
+    before_r = r;
+    before = above;
+    r += std::max(std::max(kStep, kStepGrowth * r), above / fastest_approach);
+  }
+  return kMiss;
+}
+
 void GroundWindow::meet(const RayFan& fan, std::vector<float>& parameters) const {
   parameters.assign(fan.slopes.size(), kMiss);
-  const auto u0 = static_cast<float>(fan.origin.x() / kCell - first_column_);
-  const auto v0 = static_cast<float>(fan.origin.y() / kCell - first_row_);
-  const auto z0 = static_cast<float>(fan.origin.z());
-  const Eigen::Vector3f forward = fan.forward.cast<float>();
-  const Eigen::Vector3f up = fan.up.cast<float>();
-  const auto cells = static_cast<float>(1.0 / kCell);
+  const Eigen::Vector3f cells = Eigen::Vector3d(1.0 / kCell, 1.0 / kCell, 1.0).cast<float>();
+  const Eigen::Vector3d corner(first_column_ * kCell, first_row_ * kCell, 0.0);
+  const Eigen::Vector3f origin = (fan.origin - corner).cast<float>().cwiseProduct(cells);
+  const Eigen::Vector3f forward = fan.forward.cast<float>().cwiseProduct(cells);
+  const Eigen::Vector3f up = fan.up.cast<float>().cwiseProduct(cells);
 
   // In one plane a higher ray enters the ground further out: each begins where the one below it ended.
-  float r = kNearest;
+  float reached = kNearest;
   for (std::size_t i = 0; i < fan.slopes.size(); ++i) {
-    const Eigen::Vector3f direction = forward + fan.slopes[i] * up;
-    const float du = direction.x() * cells;
-    const float dv = direction.y() * cells;
-    r = std::max(kNearest, r - kStep);
-    float before_r = r;
-    float before = 0.0f;
-    while (r < static_cast<float>(kReach)) {
-      const float above = z0 + r * direction.z() - heightAtCell(u0 + r * du, v0 + r * dv);
-      if (above <= 0.0f) {
-        r = before > 0.0f ? before_r + (r - before_r) * before / (before - above) : r;
-        parameters[i] = r;
-        break;
-      }
-      before_r = r;
-      before = above;
-      r += std::max(kStep, above / std::max(0.2f, kSteepest - direction.z()));
-    }
-    if (parameters[i] == kMiss) return;
+    const float from = std::max(kNearest, reached - kStep);
+    reached = enter(origin, forward + fan.slopes[i] * up, from);
+    if (reached == kMiss) return;
+    parameters[i] = reached;
   }
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-double wrapAngle(double angle) { return std::remainder(angle, 2.0 * kPi); }
+double wrapAngle(double angle) { return angle - 2.0 * kPi * std::round(angle / (2.0 * kPi)); }
 
 }  // namespace
 
@@ -31,7 +31,7 @@ Path& Path::wrap() {
 void Path::append(double length, double curvature) {
   PathPoint start = end_;
   start.curvature = curvature;
-  pieces_.push_back({length_, length, start});
+  pieces_.push_back({length_, length, start, start.forward(), start.left()});
   end_ = along(pieces_.back(), length);
   length_ += length;
 }
@@ -40,11 +40,11 @@ PathPoint Path::along(const Piece& piece, double s) {
   PathPoint point = piece.start;
   const double k = piece.start.curvature;
   if (k == 0.0) {
-    point.position += s * piece.start.forward();
+    point.position += s * piece.forward;
     return point;
   }
   point.yaw = piece.start.yaw + k * s;
-  point.position += (piece.start.left() - point.left()) / k;
+  point.position += (piece.left - point.left()) / k;
   return point;
 }
 
@@ -62,20 +62,23 @@ PathPoint Path::at(double s, double lateral) const {
 Path::Projection Path::projectOnto(const Piece& piece, const Eigen::Vector2d& point) {
   const double k = piece.start.curvature;
   const Eigen::Vector2d from_start = point - piece.start.position;
-  double s = from_start.dot(piece.start.forward());
+  double s = from_start.dot(piece.forward);
+  double lateral = from_start.dot(piece.left);
   if (k != 0.0) {
-    const Eigen::Vector2d from_center = from_start - piece.start.left() / k;
-    const Eigen::Vector2d outward = -std::copysign(1.0, k) * piece.start.left();
+    const Eigen::Vector2d from_center = from_start - piece.left / k;
+    const Eigen::Vector2d outward = -std::copysign(1.0, k) * piece.left;
     const double turned = std::atan2(outward.x() * from_center.y() - outward.y() * from_center.x(),
                                      outward.dot(from_center));
     // Seen from the arc's middle, so that the cut lies opposite to it.
     const double half_turn = 0.5 * piece.length * k;
     s = (wrapAngle(turned - half_turn) + half_turn) / k;
+    lateral = std::copysign(1.0, k) * (1.0 / std::abs(k) - from_center.norm());
   }
+  if (s >= 0.0 && s <= piece.length) return {piece.s + s, lateral, std::abs(lateral)};
   s = std::clamp(s, 0.0, piece.length);
-  const PathPoint foot = along(piece, s);
-  const Eigen::Vector2d offset = point - foot.position;
-  return {piece.s + s, offset.dot(foot.left()), offset.norm()};
+  const PathPoint end = along(piece, s);
+  const Eigen::Vector2d offset = point - end.position;
+  return {piece.s + s, offset.dot(end.left()), offset.norm()};
 }
 
 Path::Projection Path::project(const Eigen::Vector2d& point) const {

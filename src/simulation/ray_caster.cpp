@@ -28,7 +28,7 @@ Eigen::Vector3f boundOf(const Shape& shape) {
 }  // namespace
 
 RayCaster::RayCaster(const SensorModel& model)
-    : model_(model), sectors_(static_cast<std::size_t>(sectorOf(model.columns - 1)) + 1) {}
+    : model_(model), sectors_(static_cast<std::size_t>(sectorOf(model.columns() - 1)) + 1) {}
 
 int RayCaster::sectorOf(int column) const { return floorDivide(column, kSectorColumns); }
 
@@ -79,7 +79,7 @@ void RayCaster::distribute(const Extent& extent, const Stretch& stretch) {
   const int count = static_cast<int>(sectors_.size());
   const int first_open = sectorOf(stretch.first_column);
   const int last_open = sectorOf(stretch.end_column - 1);
-  const float columns_per_radian = static_cast<float>(model_.columns) / (2.0f * kPi);
+  const float columns_per_radian = static_cast<float>(model_.columns()) / (2.0f * kPi);
   const auto columnAt = [&](float azimuth) { return (kPi - azimuth) * columns_per_radian - 0.5f; };
   int first = sectorOf(static_cast<int>(std::floor(columnAt(extent.azimuth + extent.half_angle))));
   int last = sectorOf(static_cast<int>(std::ceil(columnAt(extent.azimuth - extent.half_angle))));
@@ -110,9 +110,9 @@ void RayCaster::prepare(const std::vector<Target>& targets, const Stretch& stret
 }
 
 void RayCaster::cast(int column, const Eigen::Isometry3f& sensor, float time, std::vector<Hit>& hits) const {
-  const auto azimuth = static_cast<float>(model_.azimuth(column));
+  const Eigen::Vector2f heading = model_.headings[static_cast<std::size_t>(column)].cast<float>();
   const Eigen::Matrix3f axes = sensor.linear();
-  const Eigen::Vector3f forward = axes * Eigen::Vector3f(std::cos(azimuth), std::sin(azimuth), 0.0f);
+  const Eigen::Vector3f forward = axes.leftCols<2>() * heading;
   const Eigen::Vector3f up = axes.col(2);
   const std::vector<Extent>& sector = sectors_[static_cast<std::size_t>(sectorOf(column))];
   for (std::size_t beam = 0; beam < model_.slopes.size(); ++beam) {

@@ -182,6 +182,6 @@ std::vector<MoverTruth> Simulator::movers(double stamp) const {
 }
 
 int Simulator::beams() const { return state_->sensor.beams(); }
-int Simulator::columns() const { return state_->sensor.columns; }
+int Simulator::columns() const { return state_->sensor.columns(); }
 
 }  // namespace donex::simulation

@@ -87,7 +87,7 @@ void Sweep::gatherMovers() {
 }
 
 Stretch Sweep::stretchOf(int first_column, int end_column) const {
-  const double per_column = options_.duration / model_.columns;
+  const double per_column = options_.duration / model_.columns();
   const auto timeOf = [&](int column) { return options_.distortion ? per_column * column - options_.duration : 0.0; };
   const double middle = 0.5 * (timeOf(first_column) + timeOf(end_column));
   Eigen::Isometry3d pose = sensorAt(middle);
@@ -113,8 +113,8 @@ Eigen::Vector3f Sweep::normalOf(const Echo& echo, const Eigen::Vector3f& point, 
 
 void Sweep::receive(const Echo& echo) {
   const float slope = model_.slopes[static_cast<std::size_t>(echo.beam)];
-  const double azimuth = model_.azimuth(echo.column);
-  const Eigen::Vector3d ray(std::cos(azimuth), std::sin(azimuth), slope);
+  const Eigen::Vector2d heading = model_.headings[static_cast<std::size_t>(echo.column)];
+  const Eigen::Vector3d ray(heading.x(), heading.y(), slope);
   const double length = ray.norm();
   const double range = static_cast<double>(echo.hit.parameter) * length;
   if (range > options_.max_range) return;
@@ -137,17 +137,16 @@ void Sweep::receive(const Echo& echo) {
   if (measured < static_cast<double>(model_.min_range) || measured > options_.max_range) return;
   const double shine = 0.9 + 0.2 * static_cast<double>(bits & 0xFFFF) / 65536.0;
   const double intensity = std::min(1.0, static_cast<double>(surface.reflectivity) * (0.3 + 0.7 * facing) * shine);
-  const double time = options_.distortion ? options_.duration * ((echo.column + 0.5) / model_.columns - 1.0) : 0.0;
+  const double time = options_.distortion ? options_.duration * ((echo.column + 0.5) / model_.columns() - 1.0) : 0.0;
   echoes_->push_back({(measured / length * ray).cast<float>(), static_cast<float>(intensity), static_cast<float>(time),
                       static_cast<std::uint16_t>(echo.beam)});
   labels_->push_back(surface.label);
 }
 
 void Sweep::fire(int column) {
-  const double after = options_.distortion ? options_.duration * ((column + 0.5) / model_.columns - 1.0) : 0.0;
+  const double after = options_.distortion ? options_.duration * ((column + 0.5) / model_.columns() - 1.0) : 0.0;
   const Eigen::Isometry3d sensor = sensorAt(after);
-  const double azimuth = model_.azimuth(column);
-  const Eigen::Vector3d forward = sensor.linear() * Eigen::Vector3d(std::cos(azimuth), std::sin(azimuth), 0.0);
+  const Eigen::Vector3d forward = sensor.linear().leftCols<2>() * model_.headings[static_cast<std::size_t>(column)];
   window_.meet({sensor.translation(), forward, sensor.linear().col(2), model_.slopes}, ground_);
   for (std::size_t i = 0; i < hits_.size(); ++i) hits_[i] = {ground_[i], ground_[i] == kMiss ? kNoTarget : kGround};
 
@@ -181,7 +180,7 @@ void Sweep::measure(double time, std::size_t turn, std::vector<SimulatedEcho>& e
 
   const int stretches = options_.distortion ? kStretches : 1;
   for (int i = 0; i < stretches; ++i) {
-    const Stretch stretch = stretchOf(model_.columns * i / stretches, model_.columns * (i + 1) / stretches);
+    const Stretch stretch = stretchOf(model_.columns() * i / stretches, model_.columns() * (i + 1) / stretches);
     caster_.prepare(targets_, stretch);
     for (int column = stretch.first_column; column < stretch.end_column; ++column) fire(column);
   }

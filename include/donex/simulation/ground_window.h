@@ -39,16 +39,17 @@ class GroundWindow {
   void meet(const RayFan& fan, std::vector<float>& parameters) const;
 
  private:
-  struct Sample {
-    float height;
-    std::uint32_t label;
-  };
-  std::size_t slot(int column, int row) const;
-  float heightAtCell(float u, float v) const;
+  static std::size_t slot(int column, int row) {
+    constexpr int kMask = kCells - 1;
+    return static_cast<std::size_t>(row & kMask) * kCells + static_cast<std::size_t>(column & kMask);
+  }
+  float heightAtCell(float u, float v) const;  // counted from the window's corner
+  float enter(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float from) const;
   void sampleBlock(int first_column, int first_row, int columns, int rows);
 
   const Ground& ground_;
-  std::vector<Sample> samples_;
+  std::vector<float> heights_;
+  std::vector<std::uint8_t> labels_;
   int first_column_ = 0;
   int first_row_ = 0;
   bool filled_ = false;

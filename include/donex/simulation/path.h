@@ -45,6 +45,8 @@ class Path {
     double s;  ///< where it begins
     double length;
     PathPoint start;
+    Eigen::Vector2d forward;  ///< at the start
+    Eigen::Vector2d left;
   };
   static PathPoint along(const Piece& piece, double s);
   static Projection projectOnto(const Piece& piece, const Eigen::Vector2d& point);

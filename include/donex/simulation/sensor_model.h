@@ -3,16 +3,17 @@
 
 #include <vector>
 
+#include <Eigen/Core>
+
 namespace donex::simulation {
 
 struct SensorModel {
   std::vector<float> slopes;  ///< tangents of the beams' elevations, rising; one a ring
-  int columns = 0;            ///< firings a turn
+  std::vector<Eigen::Vector2d> headings;  ///< unit, sensor axes; one a column. Begins at the rear, clockwise from above
   float min_range = 0.9f;     ///< [m]
 
   int beams() const { return static_cast<int>(slopes.size()); }
-  /// Azimuth of a firing [rad]: begins at the rear and turns clockwise seen from above.
-  double azimuth(int column) const;
+  int columns() const { return static_cast<int>(headings.size()); }  ///< firings a turn
 };
 
 /// 16 and 32: sparse sensors with even tables; 64: two blocks of beams, finer above; 128: densest around the horizon.
