@@ -14,6 +14,9 @@ namespace {
 /// tf is asked this often within a scan [s]; between, the motion is interpolated.
 constexpr double kTfStep = 0.005;
 
+/// Times a driver rounds to floats or nanoseconds may miss the odometry they were taken with by this much [s].
+constexpr double kTimeRounding = 1e-6;
+
 template <class... Parts>
 std::string textOf(const Parts&... parts) {
   std::ostringstream text;
@@ -152,7 +155,7 @@ MotionAnswer MotionSource::fromOdometry(const ScanTimes& times, const std::strin
   const double last = stamp + times.last;
   if (odometry_.empty()) return missing(MotionFault::kNoSamples, stamp);
   const double lag = last - odometry_.newestStamp();
-  if (lag > 0.0 && (!settle || lag > config_.max_extrapolation)) {
+  if (lag > kTimeRounding && (!settle || lag > config_.max_extrapolation)) {
     return MotionMissing{DropReason::kNoOdometry,
                          textOf("the newest odometry is ", lag, " s older than the cloud of ", stamp, " s"), true};
   }

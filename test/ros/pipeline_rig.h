@@ -1,0 +1,107 @@
+// A pipeline with everything it tells written down, and short ways to feed it.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <tf2/buffer_core.h>
+
+#include "donex/ros/pipeline.h"
+#include "ros/cloud_builder.h"
+
+namespace donex::test {
+
+/// Odometry that moves straight along x at `speed` [m/s] through x = 0 at 100 s.
+inline nav_msgs::Odometry odometryAt(double stamp, double speed = 0.0) {
+  nav_msgs::Odometry odometry;
+  odometry.header.stamp.fromSec(stamp);
+  odometry.header.frame_id = "odom";
+  odometry.child_frame_id = "base_link";
+  odometry.pose.pose.position.x = speed * (stamp - 100.0);
+  odometry.pose.pose.orientation.w = 1.0;
+  odometry.twist.twist.linear.x = speed;
+  return odometry;
+}
+
+inline geometry_msgs::TransformStamped transformAt(double stamp, const std::string& parent, const std::string& child,
+                                                   double x, double z = 0.0) {
+  geometry_msgs::TransformStamped transform;
+  transform.header.stamp.fromSec(stamp);
+  transform.header.frame_id = parent;
+  transform.child_frame_id = child;
+  transform.transform.translation.x = x;
+  transform.transform.translation.z = z;
+  transform.transform.rotation.w = 1.0;
+  return transform;
+}
+
+/// Echoes on a ring around the sensor.
+inline std::vector<Eigen::Vector3f> ring(std::size_t echoes = 36) {
+  std::vector<Eigen::Vector3f> all;
+  for (std::size_t i = 0; i < echoes; ++i) {
+    const float angle = 6.2831853F * static_cast<float>(i) / static_cast<float>(echoes);
+    all.emplace_back(10.0F * std::cos(angle), 10.0F * std::sin(angle), 0.5F);
+  }
+  return all;
+}
+
+/// A small grid: quick to build and to forget.
+inline Config smallConfig(OdometrySource source = OdometrySource::kPose) {
+  Config config;
+  config.region = {-15.0, 15.0, -15.0, 15.0, -1.0, 4.0};
+  config.motion.source = source;
+  return config;
+}
+
+struct Labeled {
+  double stamp;
+  Eigen::Isometry3d odom_from_base, base_from_sensor;
+  std::vector<Eigen::Vector3f> echoes;
+  EchoLabels labels;
+};
+
+class PipelineRig {
+ public:
+  /// The sensor sits 1.7 m above base_link unless `mounted` is false.
+  explicit PipelineRig(const Config& config = smallConfig(), bool mounted = true) : pipeline(config, tf, events()) {
+    if (mounted) tf.setTransform(transformAt(0.0, "base_link", "lidar", 0.0, 1.7), "test", true);
+  }
+
+  void cloud(double stamp, double now) { pipeline.addCloud(plainCloud(ring(), stamp), now); }
+  void cloud(double stamp) { cloud(stamp, stamp); }
+  void odometry(double stamp, double speed = 0.0) { pipeline.addOdometry(odometryAt(stamp, speed)); }
+  void run(double now) {
+    while (pipeline.step(now)) {
+    }
+  }
+
+  std::size_t dropped(DropReason reason) const { return pipeline.counts().dropped.of(reason); }
+  std::size_t refused(OdometryRefusal refusal) const { return pipeline.counts().refused.of(refusal); }
+  std::vector<double> stamps() const {
+    std::vector<double> all;
+    for (const Labeled& scan : labeled) all.push_back(scan.stamp);
+    return all;
+  }
+
+  tf2::BufferCore tf;
+  std::vector<Labeled> labeled;
+  std::vector<std::string> drops, refusals, forgotten, strange_times;
+  Pipeline pipeline;
+
+ private:
+  PipelineEvents events() {
+    PipelineEvents events;
+    events.labeled = [this](const LabeledScan& scan) {
+      labeled.push_back({scan.scan.stamp, scan.scan.odom_from_base, scan.scan.base_from_sensor, scan.scan.echoes,
+                         scan.labels});
+    };
+    events.dropped = [this](DropReason, const std::string& text) { drops.push_back(text); };
+    events.refused = [this](OdometryRefusal, const std::string& text) { refusals.push_back(text); };
+    events.forgotten = [this](const std::string& text) { forgotten.push_back(text); };
+    events.strange_times = [this](const std::string& text) { strange_times.push_back(text); };
+    return events;
+  }
+};
+
+}  // namespace donex::test

@@ -1,0 +1,280 @@
+// Clouds meet their motion by time, whatever the order of arrival, and the motion is the right one.
+#include <algorithm>
+#include <map>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "ros/pipeline_rig.h"
+
+namespace donex {
+namespace {
+
+using test::CloudBuilder;
+using test::PipelineRig;
+using test::PointField;
+
+TEST(Pipeline, waitsForOdometryThatCoversTheStamp) {
+  PipelineRig rig;
+  rig.odometry(100.0);
+  rig.cloud(100.05);
+  rig.run(100.05);
+  EXPECT_TRUE(rig.labeled.empty());
+  rig.odometry(100.04);
+  rig.run(100.06);
+  EXPECT_TRUE(rig.labeled.empty()) << "within max_extrapolation, but what comes must not depend on when one asks";
+  rig.odometry(100.06);
+  rig.run(100.07);
+  EXPECT_EQ(rig.stamps(), std::vector<double>{100.05});
+  EXPECT_EQ(rig.pipeline.waiting(), 0U);
+}
+
+TEST(Pipeline, interpolatesThePoseAtTheStamp) {
+  PipelineRig rig;
+  rig.odometry(100.0, 8.0);
+  rig.odometry(100.1, 8.0);
+  rig.cloud(100.025);
+  rig.run(100.1);
+  ASSERT_EQ(rig.labeled.size(), 1U);
+  EXPECT_NEAR(rig.labeled[0].odom_from_base.translation().x(), 0.2, 1e-6);
+  EXPECT_NEAR(rig.labeled[0].base_from_sensor.translation().z(), 1.7, 1e-12);
+}
+
+TEST(Pipeline, theOrderOfArrivalDoesNotMatter) {
+  std::mt19937 random(11);
+  for (int repetition = 0; repetition < 20; ++repetition) {
+    // Clouds at 10 Hz, odometry at 50 Hz, both out of order by up to 0.3 s.
+    std::multimap<double, double> clouds, odometry;  // by arrival
+    std::uniform_real_distribution<double> delay(0.0, 0.3);
+    for (int i = 0; i <= 20; ++i) clouds.emplace(100.0 + 0.1 * i + delay(random), 100.0 + 0.1 * i);
+    for (int i = 0; i <= 105; ++i) odometry.emplace(100.0 + 0.02 * i + delay(random), 100.0 + 0.02 * i);
+    PipelineRig rig;
+    for (double now = 100.0; now < 104.0; now += 0.001) {
+      for (; !odometry.empty() && odometry.begin()->first <= now; odometry.erase(odometry.begin())) {
+        rig.odometry(odometry.begin()->second, 5.0);
+      }
+      for (; !clouds.empty() && clouds.begin()->first <= now; clouds.erase(clouds.begin())) {
+        rig.cloud(clouds.begin()->second, now);
+      }
+      rig.run(now);
+    }
+    rig.pipeline.finish();
+    EXPECT_TRUE(std::is_sorted(rig.labeled.begin(), rig.labeled.end(),
+                               [](const auto& a, const auto& b) { return a.stamp < b.stamp; }));
+    ASSERT_EQ(rig.labeled.size() + rig.pipeline.counts().dropped.total(), 21U);
+    EXPECT_GE(rig.labeled.size(), 10U);
+    for (const auto& scan : rig.labeled) {
+      EXPECT_NEAR(scan.odom_from_base.translation().x(), 5.0 * (scan.stamp - 100.0), 1e-6);
+    }
+  }
+}
+
+TEST(Pipeline, extrapolatesOnlyAfterTheTimeoutAndOnlyBounded) {
+  PipelineRig rig;
+  rig.odometry(99.9, 8.0);
+  rig.odometry(100.0, 8.0);
+  rig.cloud(100.015);
+  rig.cloud(100.03);
+  rig.run(100.4);
+  EXPECT_TRUE(rig.labeled.empty());
+  rig.run(100.6);
+  ASSERT_EQ(rig.stamps(), std::vector<double>{100.015});
+  EXPECT_NEAR(rig.labeled[0].odom_from_base.translation().x(), 0.12, 1e-6);
+  EXPECT_EQ(rig.dropped(DropReason::kNoOdometry), 1U);
+  EXPECT_NE(rig.drops.at(0).find("0.030 s older"), std::string::npos) << rig.drops[0];
+}
+
+TEST(Pipeline, withoutOdometryEveryCloudIsDroppedWithAReason) {
+  PipelineRig rig;
+  for (int i = 0; i < 5; ++i) rig.cloud(100.0 + 0.1 * i);
+  rig.run(101.0);
+  EXPECT_EQ(rig.dropped(DropReason::kNoOdometry), 5U);
+  EXPECT_EQ(rig.drops.size(), 5U);
+}
+
+TEST(Pipeline, lateOdometryLosesNoCloud) {
+  PipelineRig rig;
+  for (int i = 0; i < 30; ++i) {
+    const double now = 100.0 + 0.1 * i;
+    rig.cloud(now);
+    if (i >= 4) rig.odometry(now - 0.4);
+    rig.run(now);
+  }
+  EXPECT_EQ(rig.labeled.size(), 26U);
+  EXPECT_EQ(rig.pipeline.counts().dropped.total(), 0U);
+}
+
+TEST(Pipeline, beforeTheFirstOdometry) {
+  PipelineRig rig;
+  rig.odometry(100.0);
+  rig.cloud(99.9);
+  rig.run(100.0);
+  EXPECT_EQ(rig.dropped(DropReason::kBeforeOdometry), 1U);
+}
+
+TEST(Pipeline, aGapIsNotInterpolated) {
+  PipelineRig rig;
+  rig.odometry(100.0);
+  rig.odometry(105.0);
+  rig.cloud(102.0, 105.0);
+  rig.cloud(105.0);
+  rig.run(105.0);
+  EXPECT_EQ(rig.dropped(DropReason::kOdometryGap), 1U);
+  EXPECT_EQ(rig.stamps(), std::vector<double>{105.0});
+}
+
+TEST(Pipeline, theQueueIsBoundedAndTheNewestStay) {
+  Config config = test::smallConfig();
+  config.node.queue_size = 3;
+  PipelineRig rig(config);
+  for (int i = 0; i < 8; ++i) rig.cloud(100.0 + 0.1 * i, 100.0);
+  EXPECT_EQ(rig.pipeline.waiting(), 3U);
+  EXPECT_EQ(rig.dropped(DropReason::kQueueFull), 5U);
+  rig.odometry(100.0);
+  rig.odometry(100.8);
+  rig.run(100.0);
+  EXPECT_EQ(rig.stamps(), (std::vector<double>{100.5, 100.6, 100.7}));
+}
+
+TEST(Pipeline, missingTransformIsWaitedForThenDropped) {
+  PipelineRig rig(test::smallConfig(), false);
+  for (int i = 0; i < 20; ++i) rig.odometry(100.0 + 0.1 * i);
+  rig.cloud(100.0);
+  rig.cloud(100.5);
+  rig.run(100.5);
+  EXPECT_EQ(rig.dropped(DropReason::kNoTransform), 1U);
+  EXPECT_NE(rig.drops.at(0).find("'base_link' <- 'lidar'"), std::string::npos) << rig.drops[0];
+  rig.tf.setTransform(test::transformAt(0.0, "base_link", "lidar", 0.0, 1.7), "test", true);
+  rig.run(100.6);
+  EXPECT_EQ(rig.stamps(), std::vector<double>{100.5});
+}
+
+TEST(Pipeline, odometryOfAnUnconnectedFrame) {
+  PipelineRig rig;
+  const auto wrong = [](double stamp) {
+    auto odometry = test::odometryAt(stamp);
+    odometry.child_frame_id = "somebody_else";
+    return odometry;
+  };
+  for (int i = 0; i < 10; ++i) rig.pipeline.addOdometry(wrong(100.0 + 0.1 * i));
+  rig.cloud(100.2);
+  rig.run(100.8);
+  EXPECT_EQ(rig.dropped(DropReason::kNoTransform), 1U);
+  EXPECT_NE(rig.drops.at(0).find("somebody_else"), std::string::npos) << rig.drops[0];
+  // The right frames come: the old track must not be mixed with the new one.
+  rig.odometry(101.0);
+  rig.odometry(101.1);
+  rig.cloud(101.05);
+  rig.run(101.1);
+  EXPECT_EQ(rig.stamps(), std::vector<double>{101.05});
+  EXPECT_EQ(rig.forgotten.size(), 1U);
+}
+
+TEST(Pipeline, aLeadingSlashIsNoOtherFrame) {
+  PipelineRig rig;
+  auto odometry = test::odometryAt(100.0);
+  odometry.header.frame_id = "/odom";
+  odometry.child_frame_id = "/base_link";
+  rig.pipeline.addOdometry(odometry);
+  rig.pipeline.addCloud(test::plainCloud(test::ring(), 100.0, "/lidar"), 100.0);
+  rig.run(100.0);
+  EXPECT_EQ(rig.labeled.size(), 1U);
+}
+
+TEST(Pipeline, baseFrameWhereTheOdometryNamesNone) {
+  PipelineRig rig;
+  auto odometry = test::odometryAt(100.0);
+  odometry.child_frame_id.clear();
+  rig.pipeline.addOdometry(odometry);
+  rig.cloud(100.0);
+  rig.run(100.0);
+  EXPECT_EQ(rig.labeled.size(), 1U);
+}
+
+TEST(Pipeline, atRestNothingElseIsNeeded) {
+  PipelineRig rig(test::smallConfig(OdometrySource::kNone), false);
+  rig.cloud(100.0);
+  rig.cloud(100.1);
+  rig.run(100.1);
+  ASSERT_EQ(rig.labeled.size(), 2U);
+  EXPECT_TRUE(rig.labeled[1].odom_from_base.isApprox(Eigen::Isometry3d::Identity()));
+}
+
+TEST(Pipeline, motionFromTf) {
+  PipelineRig rig(test::smallConfig(OdometrySource::kTf));
+  rig.tf.setTransform(test::transformAt(100.0, "odom", "base_link", 0.0), "test");
+  rig.cloud(100.05);
+  rig.run(100.05);
+  EXPECT_TRUE(rig.labeled.empty());
+  rig.tf.setTransform(test::transformAt(100.1, "odom", "base_link", 1.0), "test");
+  rig.run(100.1);
+  ASSERT_EQ(rig.labeled.size(), 1U);
+  EXPECT_NEAR(rig.labeled[0].odom_from_base.translation().x(), 0.5, 1e-6);
+}
+
+TEST(Pipeline, motionFromTwist) {
+  PipelineRig rig(test::smallConfig(OdometrySource::kTwist));
+  for (int i = 0; i <= 10; ++i) {
+    auto odometry = test::odometryAt(100.0 + 0.1 * i, 4.0);
+    odometry.pose.pose = {};  // nobody fills it in
+    rig.pipeline.addOdometry(odometry);
+  }
+  rig.cloud(100.0);
+  rig.cloud(100.75);
+  rig.run(101.0);
+  ASSERT_EQ(rig.labeled.size(), 2U);
+  const Eigen::Isometry3d moved = rig.labeled[0].odom_from_base.inverse() * rig.labeled[1].odom_from_base;
+  EXPECT_NEAR(moved.translation().x(), 3.0, 1e-6);
+}
+
+/// A point 20 m ahead, seen three times in one scan at 10 m/s.
+boost::shared_ptr<test::PointCloud2> distortedCloud(double stamp) {
+  CloudBuilder builder;
+  builder.stamp(stamp).xyz().field("time", PointField::FLOAT32).size(3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double time = 0.05 * static_cast<double>(i);
+    builder.at(i, 20.0 - 10.0 * time, 0.0, 0.0).set(i, "time", time);
+  }
+  return builder.build();
+}
+
+TEST(Pipeline, deskewsByEachEchosOwnTime) {
+  for (const OdometrySource source : {OdometrySource::kPose, OdometrySource::kTwist, OdometrySource::kTf}) {
+    PipelineRig rig(test::smallConfig(source));
+    rig.tf.setTransform(test::transformAt(100.0, "odom", "base_link", 0.0), "test");
+    rig.odometry(100.0, 10.0);
+    rig.odometry(100.05, 10.0);
+    rig.pipeline.addCloud(distortedCloud(100.0), 100.0);
+    rig.run(100.05);
+    EXPECT_TRUE(rig.labeled.empty()) << "the last echo is not covered yet";
+    rig.tf.setTransform(test::transformAt(100.2, "odom", "base_link", 2.0), "test");
+    rig.odometry(100.1, 10.0);
+    rig.run(100.1);
+    ASSERT_EQ(rig.labeled.size(), 1U);
+    for (const Eigen::Vector3f& echo : rig.labeled[0].echoes) EXPECT_NEAR(echo.x(), 20.0F, 1e-3F);
+  }
+}
+
+TEST(Pipeline, withoutDeskewEchoesStayAsMeasured) {
+  Config config = test::smallConfig();
+  config.motion.deskew = false;
+  PipelineRig rig(config);
+  rig.odometry(100.0, 10.0);
+  rig.pipeline.addCloud(distortedCloud(100.0), 100.0);
+  rig.run(100.0);
+  ASSERT_EQ(rig.labeled.size(), 1U);
+  EXPECT_EQ(rig.labeled[0].echoes[2].x(), 19.0F);
+}
+
+TEST(Pipeline, timesOfAnotherClockAreToldAndIgnored) {
+  PipelineRig rig;
+  rig.odometry(100.0, 10.0);
+  auto cloud = CloudBuilder().stamp(100.0).xyz().field("timestamp", PointField::FLOAT64).size(1);
+  rig.pipeline.addCloud(cloud.at(0, 1, 2, 3).set(0, "timestamp", 5e8).build(), 100.0);
+  rig.run(100.0);
+  EXPECT_EQ(rig.labeled.size(), 1U);
+  EXPECT_EQ(rig.strange_times.size(), 1U);
+}
+
+}  // namespace
+}  // namespace donex

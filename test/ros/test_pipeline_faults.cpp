@@ -1,0 +1,242 @@
+// Whatever comes in: every cloud is labelled or dropped for a reason, once, and the pipeline goes on.
+#include <cmath>
+#include <limits>
+#include <random>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "ros/pipeline_rig.h"
+
+namespace donex {
+namespace {
+
+using test::CloudBuilder;
+using test::PipelineRig;
+using test::PointField;
+
+/// Scans from `first` on, 10 Hz, with odometry of the same stamps.
+void drive(PipelineRig& rig, double first, int scans) {
+  for (int i = 0; i < scans; ++i) {
+    const double stamp = first + 0.1 * i;
+    rig.odometry(stamp);
+    rig.cloud(stamp);
+    rig.run(stamp);
+  }
+}
+
+TEST(PipelineFaults, unreadableCloudsAreCountedAndTheNextIsLabelled) {
+  PipelineRig rig;
+  rig.odometry(100.0);
+  rig.pipeline.addCloud(CloudBuilder().field("x", PointField::FLOAT32).size(5).build(), 100.0);
+  auto huge = test::plainCloud(test::ring(), 100.0);
+  huge->width = std::numeric_limits<std::uint32_t>::max();
+  rig.pipeline.addCloud(huge, 100.0);
+  EXPECT_EQ(rig.dropped(DropReason::kBadLayout), 2U);
+  EXPECT_NE(rig.drops.at(0).find("'y'"), std::string::npos) << rig.drops[0];
+  rig.cloud(100.0);
+  rig.run(100.0);
+  EXPECT_EQ(rig.labeled.size(), 1U);
+}
+
+TEST(PipelineFaults, emptyOneEchoAndAllNaN) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  PipelineRig rig;
+  drive(rig, 100.0, 2);
+  rig.odometry(100.2);
+  rig.odometry(100.6);
+  rig.pipeline.addCloud(test::plainCloud({}, 100.2), 100.2);
+  rig.pipeline.addCloud(test::plainCloud({{1.0F, 2.0F, 0.5F}}, 100.3), 100.3);
+  rig.pipeline.addCloud(test::plainCloud(std::vector<Eigen::Vector3f>(50, {nan, nan, nan}), 100.4), 100.4);
+  rig.cloud(100.5);
+  rig.run(100.6);
+  ASSERT_EQ(rig.labeled.size(), 6U);
+  EXPECT_TRUE(rig.labeled[2].labels.dynamic.empty());
+  EXPECT_EQ(rig.labeled[4].labels.dynamic, std::vector<std::uint8_t>(50, 0));
+  EXPECT_EQ(rig.labeled[4].labels.observed, std::vector<std::uint8_t>(50, 0));
+}
+
+TEST(PipelineFaults, aDuplicateIsDropped) {
+  PipelineRig rig;
+  rig.cloud(100.0);
+  rig.cloud(100.0);
+  rig.odometry(100.0);
+  rig.run(100.0);
+  rig.cloud(100.0);
+  EXPECT_EQ(rig.labeled.size(), 1U);
+  EXPECT_EQ(rig.dropped(DropReason::kDuplicate), 2U);
+}
+
+TEST(PipelineFaults, oneStragglerIsDroppedAndTheGridStays) {
+  PipelineRig rig;
+  drive(rig, 100.0, 3);
+  rig.cloud(100.05, 100.3);
+  drive(rig, 100.3, 2);
+  EXPECT_EQ(rig.labeled.size(), 5U);
+  EXPECT_EQ(rig.dropped(DropReason::kOutOfOrder), 1U);
+  EXPECT_TRUE(rig.forgotten.empty());
+}
+
+TEST(PipelineFaults, aLoopedBagStartsAnewOnceAndLosesNothing) {
+  PipelineRig rig;
+  for (int loop = 0; loop < 3; ++loop) drive(rig, 100.0, 40);
+  EXPECT_EQ(rig.labeled.size(), 120U);
+  EXPECT_EQ(rig.pipeline.counts().dropped.total(), 0U);
+  EXPECT_EQ(rig.forgotten.size(), 2U) << "said once a loop";
+  // Nothing is dynamic in the first scan after a restart.
+  for (const std::size_t first : {0U, 40U, 80U}) {
+    EXPECT_EQ(rig.labeled[first].labels.dynamic, std::vector<std::uint8_t>(36, 0));
+  }
+}
+
+TEST(PipelineFaults, aLoopSeenByCloudsAlone) {
+  Config config = test::smallConfig(OdometrySource::kNone);
+  PipelineRig rig(config, false);
+  for (int loop = 0; loop < 2; ++loop) drive(rig, 100.0, 10);
+  EXPECT_EQ(rig.labeled.size(), 20U);
+  EXPECT_EQ(rig.forgotten.size(), 1U);
+}
+
+TEST(PipelineFaults, cloudsThatWaitWhenTimeRunsBackAreAccountedFor) {
+  PipelineRig rig;
+  drive(rig, 200.0, 5);
+  rig.cloud(200.6);
+  rig.cloud(200.7);
+  drive(rig, 100.0, 5);
+  EXPECT_EQ(rig.dropped(DropReason::kTimeRanBack), 2U);
+  EXPECT_EQ(rig.labeled.size(), 10U);
+}
+
+TEST(PipelineFaults, oneOldOdometryChangesNothing) {
+  PipelineRig rig;
+  drive(rig, 100.0, 5);
+  rig.odometry(3.0);
+  drive(rig, 100.5, 5);
+  EXPECT_EQ(rig.labeled.size(), 10U);
+  EXPECT_TRUE(rig.forgotten.empty());
+  EXPECT_EQ(rig.refused(OdometryRefusal::kTooOld), 1U);
+}
+
+TEST(PipelineFaults, badOdometryIsRefusedWithItsReason) {
+  PipelineRig rig;
+  auto nan = test::odometryAt(100.0);
+  nan.pose.pose.position.y = std::nan("");
+  auto no_rotation = test::odometryAt(100.0);
+  no_rotation.pose.pose.orientation.w = 0.0;
+  auto long_quaternion = test::odometryAt(100.0);
+  long_quaternion.pose.pose.orientation.w = 1.5;
+  auto nameless = test::odometryAt(100.0);
+  nameless.header.frame_id.clear();
+  for (const auto& odometry : {nan, no_rotation, long_quaternion, nameless}) rig.pipeline.addOdometry(odometry);
+  EXPECT_EQ(rig.refused(OdometryRefusal::kNonFinite), 1U);
+  EXPECT_EQ(rig.refused(OdometryRefusal::kNonUnitQuaternion), 2U);
+  EXPECT_EQ(rig.refused(OdometryRefusal::kNoFrame), 1U);
+  EXPECT_EQ(rig.refusals.size(), 4U);
+  drive(rig, 100.0, 3);
+  rig.odometry(100.1);
+  EXPECT_EQ(rig.refused(OdometryRefusal::kDuplicate), 1U);
+  EXPECT_EQ(rig.labeled.size(), 3U);
+}
+
+TEST(PipelineFaults, aLostTwistTrackForgetsTheGrid) {
+  Config config = test::smallConfig(OdometrySource::kTwist);
+  PipelineRig rig(config);
+  drive(rig, 100.0, 3);
+  drive(rig, 110.0, 3);
+  EXPECT_EQ(rig.labeled.size(), 6U);
+  EXPECT_EQ(rig.forgotten.size(), 1U);
+}
+
+TEST(PipelineFaults, anExceptionOfTheOwnerIsCounted) {
+  tf2::BufferCore tf;
+  Config config = test::smallConfig(OdometrySource::kNone);
+  int calls = 0;
+  std::string told;
+  PipelineEvents events;
+  events.labeled = [&](const LabeledScan&) {
+    if (++calls == 1) throw std::runtime_error("no room");
+  };
+  events.dropped = [&](DropReason, const std::string& text) { told = text; };
+  events.refused = [](OdometryRefusal, const std::string&) {};
+  events.forgotten = events.strange_times = [](const std::string&) {};
+  Pipeline pipeline(config, tf, events);
+  for (const double stamp : {100.0, 100.1}) {
+    pipeline.addCloud(test::plainCloud(test::ring(), stamp), stamp);
+    EXPECT_TRUE(pipeline.step(stamp));
+  }
+  EXPECT_EQ(pipeline.counts().dropped.of(DropReason::kInternalError), 1U);
+  EXPECT_EQ(told, "no room");
+  EXPECT_EQ(pipeline.counts().clouds_labeled, 1U);
+}
+
+TEST(PipelineFaults, finishSettlesWhatWaits) {
+  PipelineRig rig;
+  drive(rig, 100.0, 3);
+  rig.cloud(100.21);
+  rig.cloud(100.5);
+  rig.cloud(100.0, 100.5);
+  rig.cloud(100.05, 100.5);
+  rig.pipeline.finish();
+  EXPECT_EQ(rig.pipeline.waiting(), 0U);
+  const auto& counts = rig.pipeline.counts();
+  EXPECT_EQ(counts.clouds_in, counts.clouds_labeled + counts.dropped.total());
+}
+
+TEST(PipelineFaults, configureRefusesFaultsAndRebuildsOnlyForTheGrid) {
+  PipelineRig rig;
+  drive(rig, 100.0, 2);
+  Config config = test::smallConfig();
+  config.voxel_size = 7.0;
+  config.region.x_max = -60.0;
+  try {
+    rig.pipeline.configure(config);
+    FAIL() << "accepted";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("voxel_size"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("x_max"), std::string::npos);
+  }
+  const Detector* before = &rig.pipeline.detector();
+  config = test::smallConfig();
+  config.node.markers = false;
+  rig.pipeline.configure(config);
+  EXPECT_EQ(&rig.pipeline.detector(), before) << "a switch keeps the grid";
+  rig.cloud(100.2);
+  config.voxel_size = 0.5;
+  rig.pipeline.configure(config);
+  drive(rig, 100.3, 2);
+  EXPECT_EQ(rig.labeled.size(), 5U) << "the waiting cloud is not lost";
+  EXPECT_EQ(rig.labeled[2].labels.dynamic, std::vector<std::uint8_t>(36, 0)) << "first scan of the new grid";
+}
+
+TEST(PipelineFaults, everyCloudIsAccountedForUnderRandomFaults) {
+  std::mt19937 random(5);
+  const auto chance = [&](double probability) {
+    return std::uniform_real_distribution<double>(0.0, 1.0)(random) < probability;
+  };
+  Config config = test::smallConfig();
+  config.node.queue_size = 4;
+  PipelineRig rig(config);
+  double time = 1000.0;
+  for (int i = 0; i < 3000; ++i) {
+    time += 0.1;
+    if (chance(0.01)) time -= 20.0;
+    if (chance(0.01)) time += 20.0;
+    const double jitter = chance(0.05) ? -0.25 : 0.0;
+    if (!chance(0.1)) rig.odometry(time + jitter, 1.0);
+    if (chance(0.02)) rig.pipeline.addCloud(CloudBuilder().size(3).build(), time);
+    rig.cloud(time + (chance(0.05) ? -0.3 : 0.0), time);
+    if (chance(0.03)) rig.cloud(time);
+    rig.run(time);
+    const auto& counts = rig.pipeline.counts();
+    ASSERT_LE(counts.clouds_labeled + counts.dropped.total(), counts.clouds_in);
+    ASSERT_LE(counts.clouds_in - counts.clouds_labeled - counts.dropped.total(), 5U) << "queue and one suspect";
+  }
+  rig.pipeline.finish();
+  const auto& counts = rig.pipeline.counts();
+  EXPECT_EQ(counts.clouds_in, counts.clouds_labeled + counts.dropped.total());
+  EXPECT_EQ(rig.drops.size(), counts.dropped.total());
+  EXPECT_GT(counts.clouds_labeled, 2000U);
+}
+
+}  // namespace
+}  // namespace donex
