@@ -10,39 +10,6 @@
 
 namespace donex::simulation {
 
-OdometryOptions OdometryOptions::exact() {
-  OdometryOptions options;
-  options.position_noise = options.rotation_noise = options.drift = options.yaw_drift = 0.0;
-  options.linear_noise = options.angular_noise = 0.0;
-  return options;
-}
-
-std::vector<std::string> SimulatorOptions::faults() const {
-  std::vector<std::string> faults;
-  const auto within = [&](const char* name, double value, double low, double high) {
-    if (value >= low && value <= high) return;
-    faults.push_back(std::string(name) + ": " + std::to_string(value) + " is not within " + std::to_string(low) + " and " +
-                     std::to_string(high));
-  };
-  const bool known_beams = beams == 0 || beams == 16 || beams == 32 || beams == 64 || beams == 128;
-  if (!known_beams) faults.push_back("beams: 16, 32, 64, 128 or 0, not " + std::to_string(beams));
-  within("duration", duration, 0.0, 1e6);
-  within("scan_rate", scan_rate, 1.0, 50.0);
-  within("start_stamp", start_stamp, 0.0, 4e9);
-  within("range_noise", range_noise, 0.0, 1.0);
-  within("dropout", dropout, 0.0, 1.0);
-  within("max_range", max_range, 5.0, 300.0);
-  within("odometry rate", odometry.rate, 1.0, 1000.0);
-  within("odometry position_noise", odometry.position_noise, 0.0, 1.0);
-  within("odometry rotation_noise", odometry.rotation_noise, 0.0, 0.5);
-  within("odometry drift", odometry.drift, 0.0, 0.5);
-  within("odometry yaw_drift", odometry.yaw_drift, 0.0, 0.1);
-  within("odometry linear_noise", odometry.linear_noise, 0.0, 10.0);
-  within("odometry angular_noise", odometry.angular_noise, 0.0, 1.0);
-  within("odometry stamp_offset", odometry.stamp_offset, -1.0, 1.0);
-  return faults;
-}
-
 Scan SimulatedScan::coreScan() const {
   Scan scan;
   scan.stamp = stamp;
@@ -77,7 +44,7 @@ SensorOptions sensorOptions(const SimulatorOptions& options) {
   sensor.range_noise = options.range_noise;
   sensor.dropout = options.dropout;
   sensor.max_range = options.max_range;
-  sensor.seed = options.seed;
+  sensor.seed = static_cast<std::uint64_t>(options.seed);
   return sensor;
 }
 
@@ -95,10 +62,10 @@ Eigen::Isometry3d odomFrom(const Eigen::Isometry3d& start) {
 struct Simulator::State {
   State(const std::string& name, const SimulatorOptions& given)
       : options(checked(name, given)),
-        scene(makeScene(name, given.seed)),
+        scene(makeScene(name, static_cast<std::uint64_t>(given.seed))),
         sensor(makeSensorModel(given.beams == 0 ? scene.beams : given.beams)),
         sweep(scene, sensor, sensorOptions(given)),
-        odometry_error(given.odometry, scramble(given.seed, 0x0D0)),
+        odometry_error(given.odometry, scramble(static_cast<std::uint64_t>(given.seed), 0x0D0)),
         odom_from_scene(odomFrom(poseOf(scene.ego, scene.ground, 0.0))),
         next_sample(-static_cast<long>(std::ceil(0.1 * given.odometry.rate))) {}
 

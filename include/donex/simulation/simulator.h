@@ -8,39 +8,9 @@
 
 #include "donex/core/ego_motion.h"
 #include "donex/core/scan.h"
+#include "donex/simulation/simulator_options.h"
 
 namespace donex::simulation {
-
-/// How the reported odometry differs from the true motion.
-struct OdometryOptions {
-  double rate = 50.0;             ///< samples a second [Hz]
-  double position_noise = 0.003;  ///< white, each axis, each sample, standard deviation [m]
-  double rotation_noise = 0.0003; ///< white, each axis, each sample, standard deviation [rad]
-  double drift = 0.003;           ///< error of the travelled length, as a fraction of it
-  double yaw_drift = 0.0001;      ///< heading lost on the way [rad/m]
-  double linear_noise = 0.02;     ///< of the reported velocity, each axis, standard deviation [m/s]
-  double angular_noise = 0.002;   ///< of the reported turn rate, each axis, standard deviation [rad/s]
-  double stamp_offset = 0.0;      ///< added to every stamp [s]
-
-  /// No error at all: the true motion, at the same rate.
-  static OdometryOptions exact();
-};
-
-struct SimulatorOptions {
-  std::uint64_t seed = 1;     ///< varies the scene, and all noise; the same seed gives the same scans bit for bit
-  int beams = 0;              ///< 16, 32, 64 or 128; 0: what suits the scene (64; empty_room 16)
-  double duration = 20.0;     ///< [s]; 0: endless
-  double scan_rate = 10.0;    ///< turns of the sensor a second [Hz]
-  double start_stamp = 0.0;   ///< stamp at which the scene begins [s]; the first scan is complete one turn later
-  bool distortion = false;    ///< echoes measured one after the other while the vehicle moves, with per-echo time
-  double range_noise = 0.015; ///< along the ray, standard deviation [m]
-  double dropout = 0.01;      ///< fraction of the echoes that are lost without a reason
-  double max_range = 120.0;   ///< [m]
-  OdometryOptions odometry;
-
-  /// Every fault, a sentence each; empty when the options can be used.
-  std::vector<std::string> faults() const;
-};
 
 struct SimulatedEcho {
   Eigen::Vector3f position;  ///< sensor frame at the echo's own time [m]
