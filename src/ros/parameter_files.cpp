@@ -131,10 +131,25 @@ struct CfgWriter {
   }
 };
 
+/// Whatever can be switched off among the steps beyond the paper.
+struct SwitchesOff {
+  const Config& config;
+  std::ostringstream& out;
+
+  void operator()(const ParameterInfo& info, const bool& value) {
+    const bool is_step = isWithin(config.evidence, &value) || isWithin(config.objects, &value);
+    if (is_step) out << info.name << ": false\n";
+  }
+  template <class... Anything>
+  void operator()(const ParameterInfo&, const Anything&...) {}
+};
+
 }  // namespace
 
 std::string groupOf(const Config& config, const void* value) {
   if (isWithin(config.region, value)) return "Region";
+  if (isWithin(config.evidence, value)) return "Evidence";
+  if (isWithin(config.objects, value)) return "Objects";
   if (isWithin(config.motion, value)) return "Motion";
   if (isWithin(config.node, value)) return "Node";
   return "Classifier";
@@ -150,6 +165,15 @@ std::string defaultYaml() {
   visitParameters(config, YamlWriter{config, groups});
   return "# Every parameter with its default. Written from the code by donex_write_parameters: change it there.\n" +
          groups.text("# --- ", " ---");
+}
+
+std::string paperYaml(Method method) {
+  Config config;
+  std::ostringstream out;
+  visitParameters(config, SwitchesOff{config, out});
+  return "# The paper's method exactly; what is not named here is as in default.yaml. Written from the code by\n"
+         "# donex_write_parameters: change it there.\n"
+         "method: " + nameOf(method) + "\ncompensation: resample\n\n# --- Steps beyond the paper ---\n" + out.str();
 }
 
 std::string reconfigureCfg() {

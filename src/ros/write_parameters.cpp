@@ -1,4 +1,4 @@
-// donex_write_parameters PACKAGE: writes PACKAGE/config/default.yaml and PACKAGE/cfg/Donex.cfg anew.
+// donex_write_parameters PACKAGE: writes anew what PACKAGE/config and PACKAGE/cfg hold of the code's parameters.
 #include <fstream>
 #include <iostream>
 
@@ -22,7 +22,9 @@ int main(int argc, char** argv) {
     return 2;
   }
   const std::string package = argv[1];
-  const bool yaml = write(package + "/config/default.yaml", donex::defaultYaml());
-  const bool cfg = write(package + "/cfg/Donex.cfg", donex::reconfigureCfg());
-  return yaml && cfg ? 0 : 1;
+  const bool all_written = write(package + "/config/default.yaml", donex::defaultYaml()) &&
+                           write(package + "/config/paper_2d.yaml", donex::paperYaml(donex::Method::kDonex2d)) &&
+                           write(package + "/config/paper_3d.yaml", donex::paperYaml(donex::Method::kDonex3d)) &&
+                           write(package + "/cfg/Donex.cfg", donex::reconfigureCfg());
+  return all_written ? 0 : 1;
 }

@@ -1,4 +1,4 @@
-// config/default.yaml and cfg/Donex.cfg are written from the code: the one place of names, defaults and ranges.
+// config/{default,paper_2d,paper_3d}.yaml and cfg/Donex.cfg are written from the code: the one place of names, defaults and ranges.
 #pragma once
 
 #include <cstdint>
@@ -22,6 +22,9 @@ ReconfigureLevel levelOf(const Config& config, const void* value);
 
 /// Every parameter with its default, unit, range and meaning, as rosparam reads it.
 std::string defaultYaml();
+
+/// The paper's method exactly: every step beyond the paper switched off; the rest is as by default.
+std::string paperYaml(Method method);
 
 /// The reconfigurable parameters as dynamic_reconfigure's generator reads them.
 std::string reconfigureCfg();

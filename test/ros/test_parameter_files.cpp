@@ -1,0 +1,157 @@
+// Code, config/*.yaml and cfg/Donex.cfg say the same.
+#include <fstream>
+#include <limits>
+#include <map>
+#include <sstream>
+#include <type_traits>
+
+#include <donex/DonexConfig.h>
+#include <gtest/gtest.h>
+
+#include "donex/io/config_file.h"
+#include "donex/ros/parameter_files.h"
+#include "donex/ros/parameters.h"
+
+namespace donex {
+namespace {
+
+const std::string kPackage = DONEX_SOURCE_DIR;
+
+std::string contentOf(const std::string& file) {
+  std::ifstream in(file);
+  EXPECT_TRUE(in) << file;
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+const char* kAdvice = "run donex_write_parameters with the package's directory";
+
+/// Every parameter as text, for comparison.
+struct Lister {
+  std::map<std::string, std::string>& values;
+
+  template <class Value, class... Range>
+  void operator()(const ParameterInfo& info, const Value& value, const Range&...) {
+    std::ostringstream text;
+    text.precision(17);
+    if constexpr (std::is_enum_v<Value>) {
+      text << namesOf(value)[static_cast<std::size_t>(value)];
+    } else {
+      text << value;
+    }
+    values[info.name] = text.str();
+  }
+};
+
+std::map<std::string, std::string> valuesOf(Config config) {
+  std::map<std::string, std::string> values;
+  visitParameters(config, Lister{values});
+  return values;
+}
+
+TEST(ParameterFiles, areWrittenFromTheCode) {
+  EXPECT_EQ(contentOf(kPackage + "/config/default.yaml"), defaultYaml()) << kAdvice;
+  EXPECT_EQ(contentOf(kPackage + "/cfg/Donex.cfg"), reconfigureCfg()) << kAdvice;
+  EXPECT_EQ(contentOf(kPackage + "/config/paper_3d.yaml"), paperYaml(Method::kDonex3d)) << kAdvice;
+  EXPECT_EQ(contentOf(kPackage + "/config/paper_2d.yaml"), paperYaml(Method::kDonex2d)) << kAdvice;
+}
+
+TEST(ParameterFiles, defaultYamlReadsBackAsTheDefaults) {
+  const Config config = readConfigFile(kPackage + "/config/default.yaml");
+  EXPECT_EQ(valuesOf(config), valuesOf({}));
+  for (const auto& [name, value] : valuesOf({})) {
+    EXPECT_NE(defaultYaml().find("\n" + name + ": "), std::string::npos) << name;
+  }
+}
+
+TEST(ParameterFiles, paperFilesSwitchEveryStepOff) {
+  for (const std::string name : {"paper_3d", "paper_2d"}) {
+    const Config config = readConfigFile(kPackage + "/config/" + name + ".yaml");
+    EXPECT_FALSE(config.evidence.any() || config.objects.enabled) << name;
+    EXPECT_EQ(namesOf(config.method)[static_cast<std::size_t>(config.method)], "donex_" + name.substr(6));
+  }
+}
+
+/// The generated class speaks for cfg: its defaults and ranges are the code's.
+struct CfgComparison {
+  dynamic_reconfigure::Config defaults, min, max;
+  std::size_t compared = 0;
+
+  template <class Values>
+  auto find(const Values& values, const std::string& name) -> decltype(&values[0]) {
+    for (const auto& value : values) {
+      if (value.name == name) return &value;
+    }
+    ADD_FAILURE() << name << " is not in cfg";
+    return nullptr;
+  }
+  template <class Values, class Value>
+  void expect(const Values& values, const ParameterInfo& info, const Value& value) {
+    const auto* entry = find(values, info.name);
+    if (entry == nullptr) return;
+    EXPECT_EQ(entry->value, value) << info.name;
+  }
+
+  void operator()(const ParameterInfo& info, double& value, double from, double to) {
+    if (!info.reconfigurable) return;
+    expect(defaults.doubles, info, value);
+    expect(min.doubles, info, from);
+    expect(max.doubles, info, to);
+    ++compared;
+  }
+  void operator()(const ParameterInfo& info, int& value, int from, int to) {
+    if (!info.reconfigurable) return;
+    expect(defaults.ints, info, value);
+    expect(min.ints, info, from);
+    expect(max.ints, info, to);
+    ++compared;
+  }
+  void operator()(const ParameterInfo& info, bool& value) {
+    if (!info.reconfigurable) return;
+    expect(defaults.bools, info, value ? 1 : 0);
+    ++compared;
+  }
+  void operator()(const ParameterInfo& info, std::string& value) {
+    if (!info.reconfigurable) return;
+    expect(defaults.strs, info, value);
+    ++compared;
+  }
+  template <class Enum, class = std::enable_if_t<std::is_enum_v<Enum>>>
+  void operator()(const ParameterInfo& info, Enum& value) {
+    if (!info.reconfigurable) return;
+    expect(defaults.strs, info, namesOf(value)[static_cast<std::size_t>(value)]);
+    ++compared;
+  }
+};
+
+TEST(ParameterFiles, cfgHasTheCodesDefaultsAndRanges) {
+  CfgComparison comparison;
+  DonexConfig::__getDefault__().__toMessage__(comparison.defaults);
+  DonexConfig::__getMin__().__toMessage__(comparison.min);
+  DonexConfig::__getMax__().__toMessage__(comparison.max);
+  Config config;
+  visitParameters(config, comparison);
+  EXPECT_GT(comparison.compared, 10U);
+  const auto& message = comparison.defaults;
+  EXPECT_EQ(message.bools.size() + message.ints.size() + message.doubles.size() + message.strs.size(),
+            comparison.compared)
+      << "cfg has parameters that the code has not";
+}
+
+TEST(ParameterFiles, levelsTellSwitchesFromRebuilds) {
+  Config config;
+  EXPECT_EQ(levelOf(config, &config.voxel_size), kRebuildsGrid);
+  EXPECT_EQ(levelOf(config, &config.region.z_max), kRebuildsGrid);
+  EXPECT_EQ(levelOf(config, &config.node.marker_grid), kSwitch);
+  std::size_t switches = 0;
+  for (const auto& description : DonexConfig::__getParamDescriptions__()) {
+    const bool is_marker = description->name.rfind("marker", 0) == 0;
+    switches += is_marker ? 1U : 0U;
+    EXPECT_EQ(description->level, is_marker ? kSwitch : kRebuildsGrid) << description->name;
+  }
+  EXPECT_GT(switches, 0U);
+}
+
+}  // namespace
+}  // namespace donex
