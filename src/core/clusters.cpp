@@ -9,8 +9,16 @@ Clusters::Clusters(double reach, const Settings& settings)
     : settings_(settings),
       width_(2 * static_cast<int>(std::ceil(reach / settings.cell)) + 1),
       layers_(static_cast<int>(std::ceil(settings.height / settings.cell)) + 1),
-      cell_at_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(width_) * static_cast<std::size_t>(layers_),
-               kNone) {}
+      column_at_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(width_), kNone) {}
+
+int& Clusters::makeCell(int x, int y, int z) {
+  int& column = column_at_[static_cast<std::size_t>(y * width_ + x)];
+  if (column == kNone) {
+    column = static_cast<int>(cell_in_column_.size()) / layers_;
+    cell_in_column_.resize(cell_in_column_.size() + static_cast<std::size_t>(layers_), kNone);
+  }
+  return cell_in_column_[static_cast<std::size_t>(column * layers_ + z)];
+}
 
 void Clusters::connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
                        const std::vector<float>& heights, const std::vector<std::uint8_t>& member) {
@@ -18,7 +26,7 @@ void Clusters::connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::V
   hangSkirt();
   for (int cell = 0; cell < static_cast<int>(cells_.size()); ++cell) join(cell);
   number();
-  for (const Cell& cell : cells_) cell_at_[static_cast<std::size_t>(indexOf(cell.x, cell.y, cell.z))] = kNone;
+  for (const Cell& cell : cells_) column_at_[static_cast<std::size_t>(cell.y * width_ + cell.x)] = kNone;
 }
 
 void Clusters::fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
@@ -26,6 +34,7 @@ void Clusters::fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vect
   const auto per_cell = static_cast<float>(1.0 / settings_.cell);
   const auto highest = static_cast<float>(settings_.height);
   cells_.clear();
+  cell_in_column_.clear();
   skirt_.clear();
   of_.assign(echoes.size(), kNone);
   for (std::size_t i = 0; i < echoes.size(); ++i) {
@@ -39,7 +48,7 @@ void Clusters::fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vect
       skirt_.push_back({static_cast<int>(i), x, y});
       continue;
     }
-    int& cell = cell_at_[static_cast<std::size_t>(indexOf(x, y, z))];
+    int& cell = makeCell(x, y, z);
     if (cell == kNone) {
       cell = static_cast<int>(cells_.size());
       cells_.push_back({x, y, z, cell});
@@ -51,7 +60,7 @@ void Clusters::fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vect
 void Clusters::hangSkirt() {
   for (const auto& [echo, x, y] : skirt_) {
     for (int z = 0; z <= std::min(1, layers_ - 1) && of_[static_cast<std::size_t>(echo)] == kNone; ++z) {
-      of_[static_cast<std::size_t>(echo)] = cell_at_[static_cast<std::size_t>(indexOf(x, y, z))];
+      of_[static_cast<std::size_t>(echo)] = cellAt(x, y, z);
     }
   }
 }
@@ -74,7 +83,7 @@ void Clusters::join(int cell) {
     // The half of the neighbourhood behind this cell finds it from there.
     for (int y = std::max(here.y - across, 0); y <= std::min(here.y + across, width_ - 1); ++y) {
       for (int x = std::max(here.x - across, 0); x <= std::min(here.x + across, width_ - 1); ++x) {
-        const int other = cell_at_[static_cast<std::size_t>(indexOf(x, y, z))];
+        const int other = cellAt(x, y, z);
         if (other == kNone || other == cell) continue;
         cells_[static_cast<std::size_t>(rootOf(other))].parent = rootOf(cell);
       }
@@ -95,7 +104,7 @@ void Clusters::number() {
 }
 
 std::size_t Clusters::memoryBytes() const {
-  return (cell_at_.capacity() + of_.capacity() + number_of_root_.capacity()) * sizeof(int) +
+  return (column_at_.capacity() + cell_in_column_.capacity() + of_.capacity() + number_of_root_.capacity()) * sizeof(int) +
          cells_.capacity() * sizeof(Cell);
 }
 

@@ -36,6 +36,7 @@ class EvidenceDetector : public Detector {
         history_(makeHistory(config.evidence)),
         ground_(reachOf(config.region)),
         clusters_(reachOf(config.region), {config.objects.cell, config.objects.height, 0.01, 0.015}),
+        fine_clusters_(reachOf(config.region), {0.5 * config.objects.cell, config.objects.height, 0.01, 0.015}),
         tracker_(config.objects) {}
 
   void process(const Scan& scan, EchoLabels& labels) override {
@@ -132,6 +133,46 @@ class EvidenceDetector : public Detector {
       if (!candidate.dynamic) continue;
       for (const std::uint32_t echo : candidate.echoes) labels.dynamic[echo] = labels.observed[echo] = 1;
     }
+    releaseNeighbours(labels);
+  }
+
+  /// What stands so close to a moving thing that both are one cluster: looked at with a finer eye, a part
+  /// without a new echo is let go where it is settled, or larger than all that is new.
+  void releaseNeighbours(EchoLabels& labels) {
+    bool any = false;
+    std::fill(members_.begin(), members_.end(), Clusters::kOut);
+    for (const Candidate& candidate : candidates_) {
+      if (!candidate.dynamic || candidate.new_echoes == 0) continue;
+      any = true;
+      for (const std::uint32_t echo : candidate.echoes) {
+        members_[echo] = isGround(echo) ? Clusters::kSkirt : Clusters::kIn;
+      }
+    }
+    if (!any) return;
+    fine_clusters_.connect(sensor_, points_, heights_, members_);
+    parts_.assign(static_cast<std::size_t>(fine_clusters_.count()), Part{});
+    for (const Candidate& candidate : candidates_) {
+      if (!candidate.dynamic || candidate.new_echoes == 0) continue;
+      for (const std::uint32_t echo : candidate.echoes) {
+        if (fine_clusters_.of(echo) == Clusters::kNone) continue;
+        Part& part = parts_[static_cast<std::size_t>(fine_clusters_.of(echo))];
+        ++part.echoes;
+        part.is_new = part.is_new || places_[echo] == Place::kNew;
+        part.settled += places_[echo] == Place::kSettled ? 1 : 0;
+      }
+      int largest_new = 0;
+      for (const std::uint32_t echo : candidate.echoes) {
+        if (fine_clusters_.of(echo) == Clusters::kNone) continue;
+        const Part& part = parts_[static_cast<std::size_t>(fine_clusters_.of(echo))];
+        if (part.is_new) largest_new = std::max(largest_new, part.echoes);
+      }
+      for (const std::uint32_t echo : candidate.echoes) {
+        if (fine_clusters_.of(echo) == Clusters::kNone) continue;
+        const Part& part = parts_[static_cast<std::size_t>(fine_clusters_.of(echo))];
+        const bool other = !part.is_new && (2 * part.settled > part.echoes || part.echoes > largest_new);
+        if (other) labels.dynamic[echo] = 0;
+      }
+    }
   }
 
   /// Clusters; where only a part of one is new (a pedestrian at a wall), its parts that are not settled.
@@ -195,7 +236,7 @@ class EvidenceDetector : public Detector {
   ScanClock clock_;
   SightHistory history_;
   Ground ground_;
-  Clusters clusters_;
+  Clusters clusters_, fine_clusters_;
   ObjectTracker tracker_;
 
   GridScan scan_;
@@ -205,6 +246,8 @@ class EvidenceDetector : public Detector {
   std::vector<float> heights_;
   std::vector<Place> places_;
   std::vector<Candidate> candidates_;
+  struct Part { int echoes = 0, settled = 0; bool is_new = false; };
+  std::vector<Part> parts_;
 };
 
 }  // namespace

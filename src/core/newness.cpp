@@ -6,6 +6,7 @@
 namespace donex {
 namespace {
 
+constexpr double kFoundWindow = 0.5;  // [s]
 constexpr std::size_t kRememberedStamps = 600;
 constexpr double kBeforeEverything = -std::numeric_limits<double>::infinity();
 /// A settled voxel counts as a neighbouring surface while it was hit within this many scans.
@@ -13,16 +14,24 @@ constexpr std::uint32_t kRecentScans = 4;
 
 }  // namespace
 
+ScanClock::ScanClock(double birth_window)
+    : new_window_(birth_window), found_window_(std::min(birth_window, kFoundWindow)) {}
+
 void ScanClock::begin(double stamp) {
   ++scan_;
   stamps_.push_back(stamp);
   if (stamps_.size() > kRememberedStamps) stamps_.pop_front();
-  while (oldest_young_ < scan_ && stampOf(oldest_young_) < stamp - birth_window_) ++oldest_young_;
+  advance(new_since_, new_window_);
+  advance(found_since_, found_window_);
+}
+
+void ScanClock::advance(std::uint32_t& since, double window) const {
+  while (since < scan_ && stampOf(since) < stamps_.back() - window) ++since;
 }
 
 void ScanClock::reset() {
   scan_ = 0;
-  oldest_young_ = 1;
+  new_since_ = found_since_ = 1;
   stamps_.clear();
 }
 
@@ -44,7 +53,7 @@ Place Newness3d::judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& 
   const Index3 voxel = voxelOf(in_window);
   VoxelRecord& record = memory_.at(voxel);
   if (record.last_hit != clock.scan()) {
-    const bool settled = record.occupied() && !clock.isYoung(record.birth);
+    const bool settled = record.occupied() && !clock.isYoung(record.birth, record.was_free);
     const bool missed = record.last_hit + 1 < clock.scan();
     // De-shadowing, asked where the answer matters: only a voxel that is hit again after a gap.
     const double since = record.occupied() ? clock.stampOf(record.last_hit) : kBeforeEverything;
@@ -56,7 +65,7 @@ Place Newness3d::judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& 
     }
     record.last_hit = clock.scan();
   }
-  if (!clock.isYoung(record.birth) || record.at_surface) return Place::kSettled;
+  if (!clock.isYoung(record.birth, record.was_free) || record.at_surface) return Place::kSettled;
   return record.was_free ? Place::kNew : Place::kUnobserved;
 }
 
@@ -67,7 +76,7 @@ bool Newness3d::touchesSettled(const Index3& voxel, const ScanClock& clock) cons
         const Index3 neighbour = voxel + Index3(x, y, z);
         if (neighbour == voxel || !window().contains(neighbour)) continue;
         const VoxelRecord* record = memory_.find(neighbour);
-        const bool is_surface = record != nullptr && !clock.isYoung(record->birth) &&
+        const bool is_surface = record != nullptr && !clock.isYoung(record->birth, record->was_free) &&
                                 record->last_hit + kRecentScans > clock.scan();
         if (is_surface) return true;
       }
@@ -89,13 +98,13 @@ void Newness2d::reset() {
 }
 
 void Newness2d::settle(Cell& cell, const ScanClock& clock) const {
-  const auto settle_range = [&](HeightRange& range, std::uint32_t birth) {
-    if (range.empty() || clock.isYoung(birth)) return;
+  const auto settle_range = [&](HeightRange& range, std::uint32_t birth, bool was_free) {
+    if (range.empty() || clock.isYoung(birth, was_free)) return;
     cell.settled.extend(range);
     range = HeightRange{};
   };
-  settle_range(cell.arrived, cell.arrived_birth);
-  settle_range(cell.found, cell.found_birth);
+  settle_range(cell.arrived, cell.arrived_birth, true);
+  settle_range(cell.found, cell.found_birth, false);
 }
 
 Place Newness2d::judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& point, const ScanClock& clock,

@@ -16,7 +16,8 @@ constexpr std::size_t kTracePoints = 48;
 constexpr double kLongest = 25.0;          // [m] longer things are no objects: walls, hedges
 constexpr double kSmoothing = 0.3;         // share of the newest displacement in the velocity
 constexpr double kLeastShare = 0.15;       // of all echoes that must be new
-constexpr int kRecedingScans = 2;
+constexpr int kScansToBelieve = 2;
+constexpr int kLeastLeft = 3;              // points of a trace
 
 bool alike(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return ((a - b).array().abs() <= (0.5 * a.cwiseMax(b)).array() + 0.7).all();
@@ -51,7 +52,7 @@ void ObjectTracker::update(double stamp, const std::vector<Eigen::Vector3f>& poi
     }
     Track& track = tracks_[static_cast<std::size_t>(track_of_[i])];
     follow(track, stamp, candidate);
-    decide(track, stamp, candidate, hasReceded(track, stamp, points_from_odom, history));
+    decide(track, stamp, candidate, lookBack(track, stamp, points_from_odom, history));
     leaveTrace(track, stamp, candidate, points, odom_from_points);
     if (track.ever_dynamic) describe(track, stamp, candidate, points, odom_from_points);
   }
@@ -96,28 +97,32 @@ void ObjectTracker::follow(Track& track, double stamp, const Candidate& candidat
   track.last_seen = stamp;
 }
 
-bool ObjectTracker::hasReceded(const Track& track, double stamp, const Eigen::Isometry3d& points_from_odom,
-                               const SightHistory& history) const {
+ObjectTracker::Former ObjectTracker::lookBack(const Track& track, double stamp,
+                                              const Eigen::Isometry3d& points_from_odom,
+                                              const SightHistory& history) const {
   const Trace* former = nullptr;
   for (const Trace& trace : track.traces) {
     if (trace.stamp <= stamp - kLookBack) former = &trace;
   }
-  if (former == nullptr) return false;
-  int free = 0, surface = 0;
+  Former result;
+  if (former == nullptr) return result;
   for (const Eigen::Vector3d& point : former->in_odom) {
     const SightImage::Sight sight = history.askNewest((points_from_odom * point).cast<float>());
-    free += sight == SightImage::Sight::kFree ? 1 : 0;
-    surface += sight == SightImage::Sight::kSurface ? 1 : 0;
+    result.left += sight == SightImage::Sight::kFree ? 1 : 0;
+    result.still += sight == SightImage::Sight::kSurface ? 1 : 0;
   }
-  return free >= config_.min_echoes && free > surface;
+  return result;
 }
 
-void ObjectTracker::decide(Track& track, double stamp, Candidate& candidate, bool receded) {
+void ObjectTracker::decide(Track& track, double stamp, Candidate& candidate, const Former& former) {
   const bool mostly_settled = 2 * static_cast<std::size_t>(candidate.settled_echoes) > candidate.echoes.size();
-  track.receding_scans = receded && !mostly_settled ? track.receding_scans + 1 : 0;
-  const bool moves = isNew(candidate) || track.receding_scans >= kRecedingScans;
+  const bool receded = !mostly_settled && former.left >= config_.min_echoes && former.left > former.still;
+  const bool advanced = !mostly_settled && former.left >= kLeastLeft && candidate.new_echoes >= config_.min_echoes;
+  track.receding_scans = receded ? track.receding_scans + 1 : 0;
+  track.advancing_scans = advanced ? track.advancing_scans + 1 : 0;
+  const bool moves = isNew(candidate) || track.receding_scans >= kScansToBelieve || track.advancing_scans >= kScansToBelieve;
   if (moves) track.last_motion = stamp;
-  const bool just_stopped = track.dynamic && stamp - track.last_motion <= config_.stop_time;
+  const bool just_stopped = track.dynamic && !mostly_settled && stamp - track.last_motion <= config_.stop_time;
   track.dynamic = moves || just_stopped;
   track.ever_dynamic = track.ever_dynamic || track.dynamic;
   candidate.dynamic = track.dynamic;

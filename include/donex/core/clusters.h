@@ -43,7 +43,12 @@ class Clusters {
     int parent;  ///< union-find over cells
   };
 
-  int indexOf(int x, int y, int z) const { return (z * width_ + y) * width_ + x; }
+  /// Number of the cell, or kNone. Columns are dense, their cells are held only where there is one.
+  int cellAt(int x, int y, int z) const {
+    const int column = column_at_[static_cast<std::size_t>(y * width_ + x)];
+    return column == kNone ? kNone : cell_in_column_[static_cast<std::size_t>(column * layers_ + z)];
+  }
+  int& makeCell(int x, int y, int z);
   int rootOf(int cell);
   void fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
             const std::vector<float>& heights, const std::vector<std::uint8_t>& member);
@@ -53,7 +58,8 @@ class Clusters {
 
   Settings settings_;
   int width_, layers_;
-  std::vector<int> cell_at_;  ///< by index: number of the cell, or kNone
+  std::vector<int> column_at_;       ///< by x, y: number of the column, or kNone
+  std::vector<int> cell_in_column_;  ///< by column, z: number of the cell, or kNone
   std::vector<Cell> cells_;
   std::vector<int> of_;
   std::vector<std::array<int, 3>> skirt_;  ///< echo, x, y

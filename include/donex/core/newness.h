@@ -20,20 +20,25 @@ enum class Place : std::uint8_t {
 /// The scans so far by number, and which births count as young.
 class ScanClock {
  public:
-  explicit ScanClock(double birth_window) : birth_window_(birth_window) {}
+  /// `birth_window` [s]: places that had been seen free settle after it; others after half a second at
+  /// most: what appears in unknown space and stays is a thing that was there before.
+  explicit ScanClock(double birth_window);
 
   /// Begins the next scan [s].
   void begin(double stamp);
   void reset();
 
   std::uint32_t scan() const { return scan_; }  ///< 1 for the first
-  bool isYoung(std::uint32_t birth) const { return birth >= oldest_young_; }
+  bool isYoung(std::uint32_t birth, bool was_free) const { return birth >= (was_free ? new_since_ : found_since_); }
   /// Stamp of a scan [s], as far as they are remembered; earlier scans count as before everything.
   double stampOf(std::uint32_t scan) const;
 
  private:
-  double birth_window_;
-  std::uint32_t scan_ = 0, oldest_young_ = 1;
+  void advance(std::uint32_t& since, double window) const;
+
+  double new_window_, found_window_;  ///< [s]
+  std::uint32_t scan_ = 0;
+  std::uint32_t new_since_ = 1, found_since_ = 1;  ///< oldest births that are young
   std::deque<double> stamps_;  ///< of the last scans, newest last
 };
 

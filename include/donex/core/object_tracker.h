@@ -25,7 +25,8 @@ struct Candidate {
 /// Follows candidates from scan to scan. An object moves
 ///  - where enough of its echoes are new: its front comes into space that was free;
 ///  - where its former place is now seen free: its rear has receded. This finds a vehicle ahead at the
-///    ego vehicle's own speed, whose front nobody sees and whose rear only ever enters its own shadow.
+///    ego vehicle's own speed, whose front nobody sees and whose rear only ever enters its own shadow;
+///  - where a little of both is true: the ends of a long vehicle that passes by.
 class ObjectTracker {
  public:
   explicit ObjectTracker(const ObjectConfig& config) : config_(config) {}
@@ -54,9 +55,14 @@ class ObjectTracker {
     std::uint32_t id = 0;
     Eigen::Vector3d center, extent, velocity = Eigen::Vector3d::Zero();
     double first_seen = 0.0, last_seen = 0.0, last_motion = 0.0;
-    int receding_scans = 0;  ///< in a row
+    int receding_scans = 0, advancing_scans = 0;  ///< in a row
     bool dynamic = false, ever_dynamic = false;
     std::deque<Trace> traces;
+  };
+  /// What the present scan sees where an object was: points of its trace.
+  struct Former {
+    int left = 0;   ///< free now
+    int still = 0;  ///< a surface still
   };
   struct Pair {
     double distance;
@@ -65,9 +71,9 @@ class ObjectTracker {
 
   void match(double stamp, const std::vector<Candidate>& candidates);
   void follow(Track& track, double stamp, const Candidate& candidate);
-  bool hasReceded(const Track& track, double stamp, const Eigen::Isometry3d& points_from_odom,
+  Former lookBack(const Track& track, double stamp, const Eigen::Isometry3d& points_from_odom,
                   const SightHistory& history) const;
-  void decide(Track& track, double stamp, Candidate& candidate, bool receded);
+  void decide(Track& track, double stamp, Candidate& candidate, const Former& former);
   void leaveTrace(Track& track, double stamp, const Candidate& candidate, const std::vector<Eigen::Vector3f>& points,
                   const Eigen::Isometry3d& odom_from_points) const;
   void describe(const Track& track, double stamp, const Candidate& candidate,
