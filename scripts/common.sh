@@ -2,7 +2,7 @@
 
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 build=$repository/build
-workspace=$build/workspace
+workspace=$build/.workspace  # hidden: roslaunch looks for files in every other folder of a package
 
 # Another python3 (pyenv, conda) earlier in PATH has none of ROS's modules.
 export PATH=/usr/bin:$PATH
@@ -16,13 +16,19 @@ if [ -f /opt/ros/noetic/setup.bash ]; then
   set -u
 fi
 
-# Logs and caches stay in the build folder, too.
+# Real scans, where there are any: the workspace's links lead away from the folder beside the checkout.
+if [ -d "$repository/../shared/data" ]; then
+  export DONEX_SHARED_DATA=${DONEX_SHARED_DATA:-$repository/../shared/data}
+fi
+
+# Logs and caches stay in the build folder, too (unless you have a compiler cache of your own).
 export ROS_HOME=$build/ros_home
-export CCACHE_DIR=$build/ccache CCACHE_NOHASHDIR=1 CCACHE_BASEDIR=$repository CCACHE_MAXSIZE=1G
+export CCACHE_DIR=${CCACHE_DIR:-$build/ccache} CCACHE_NOHASHDIR=1 CCACHE_BASEDIR=$repository CCACHE_MAXSIZE=1G
 # A node's messages as they come, not when a buffer is full.
 export ROSCONSOLE_STDOUT_LINE_BUFFERED=1 PYTHONUNBUFFERED=1
 
 cmake_arguments=(
+  -DCMAKE_BUILD_TYPE=Release
   -DCMAKE_CXX_COMPILER_LAUNCHER=ccache
   -DPYTHON_EXECUTABLE=/usr/bin/python3
   -DPython3_EXECUTABLE=/usr/bin/python3)
@@ -34,10 +40,15 @@ fail() {
   exit 1
 }
 
-# A catkin workspace of its own, wherever the checkout lies.
+# A catkin workspace of its own, wherever the checkout lies. The package in it is made of links to everything but
+# the build folder: a link to the checkout itself would be a loop, which roslaunch and rosrun walk through.
 make_workspace() {
-  mkdir -p "$workspace/src"
-  ln -sfn "$repository" "$workspace/src/donex"
+  local entry
+  rm -rf "$workspace/src/donex"
+  mkdir -p "$workspace/src/donex"
+  for entry in "$repository"/*; do
+    [ "$entry" = "$build" ] || ln -s "$entry" "$workspace/src/donex/"
+  done
 }
 
 source_setup() {

@@ -1,0 +1,88 @@
+#!/usr/bin/python3
+"""The installed package alone runs the demo: test_install_space.py INSTALL_SPACE, in that space's environment."""
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+import unittest
+import xmlrpc.client
+
+import rosgraph
+import rospkg
+import rospy
+from sensor_msgs.msg import PointCloud2
+
+INSTALL_SPACE = pathlib.Path(sys.argv.pop()).resolve()
+PROGRAMS = ["donex_sequence", "donex_evaluate", "donex_simulate", "donex_bag", "donex_sequence_to_bag"]
+CLOUDS = 20
+DEADLINE = 120.0  # for the first clouds on a slow machine [s]
+
+
+class InstallSpace(unittest.TestCase):
+    def test_package_is_the_installed_one(self):
+        path = pathlib.Path(rospkg.RosPack().get_path("donex")).resolve()
+        self.assertEqual(path, INSTALL_SPACE / "share" / "donex")
+
+    def test_programs_explain_themselves(self):
+        for program in PROGRAMS:
+            path = INSTALL_SPACE / "lib" / "donex" / program
+            result = subprocess.run([str(path), "--help"], stdout=subprocess.PIPE, universal_newlines=True, timeout=60)
+            self.assertEqual(result.returncode, 0, program)
+            self.assertIn(program, result.stdout)
+
+    def test_launch_files_load(self):
+        launch = INSTALL_SPACE / "share" / "donex" / "launch"
+        for name, arguments in [("donex.launch", []), ("donex.launch", ["nodelet:=false", "rviz:=true"]),
+                                ("donex.launch", ["manager:=somebody"]), ("demo.launch", []),
+                                ("replay.launch", ["bag:=/drive.bag", "loop:=true", "mounting:=0 0 1 0 0 0 a b"])]:
+            subprocess.run(["roslaunch", "--nodes", str(launch / name)] + arguments, check=True, timeout=60,
+                           stdout=subprocess.DEVNULL)
+
+
+class Demo(unittest.TestCase):
+    """Simulated LiDAR and classifier as nodelets of one manager."""
+
+    @classmethod
+    def setUpClass(cls):
+        port = os.environ["ROS_MASTER_URI"].rsplit(":", 1)[1]
+        cls.launch = subprocess.Popen(["roslaunch", "-p", port, "donex", "demo.launch", "rviz:=false"])
+        cls.clouds = []
+        rospy.init_node("test_install_space", disable_signals=True)
+        rospy.Subscriber("/donex/labeled_points", PointCloud2, cls.on_cloud, buff_size=1 << 26)
+        end = time.monotonic() + DEADLINE
+        while len(cls.clouds) < CLOUDS and time.monotonic() < end:
+            time.sleep(0.1)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.launch.send_signal(signal.SIGINT)
+        cls.launch.wait(timeout=60)
+
+    @classmethod
+    def on_cloud(cls, cloud):
+        cls.clouds.append((cloud.header, [field.name for field in cloud.fields], cloud.width * cloud.height))
+
+    def test_labelled_clouds_come(self):
+        self.assertGreaterEqual(len(self.clouds), CLOUDS)
+        for header, fields, echoes in self.clouds:
+            self.assertEqual(fields[:3], ["x", "y", "z"])
+            self.assertIn("dynamic", fields)
+            self.assertIn("observed", fields)
+            self.assertGreater(echoes, 50000)
+        stamps = [header.stamp for header, _, _ in self.clouds]
+        self.assertEqual(stamps, sorted(stamps))
+
+    def test_nodelets_come_from_the_install_space(self):
+        address = rosgraph.Master("/test_install_space").lookupNode("/donex_manager")
+        _, _, process = xmlrpc.client.ServerProxy(address).getPid("/test_install_space")
+        maps = pathlib.Path(f"/proc/{process}/maps").read_text().splitlines()
+        libraries = {line.split()[-1] for line in maps if "libdonex" in line}
+        self.assertTrue(libraries)
+        for library in libraries:
+            self.assertTrue(library.startswith(str(INSTALL_SPACE)), library)
+
+
+if __name__ == "__main__":
+    unittest.main()
