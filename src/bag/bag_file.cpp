@@ -8,7 +8,9 @@
 #include <optional>
 #include <stdexcept>
 
+#include <boost/make_shared.hpp>
 #include <fmt/format.h>
+#include <tf2_msgs/TFMessage.h>
 
 namespace donex {
 namespace fs = std::filesystem;
@@ -58,14 +60,13 @@ void openBag(const fs::path& file, rosbag::Bag& bag) {
   const std::string name = file.string();
   if (!fs::exists(file)) throw DataError(name + ": does not exist");
   if (!fs::is_regular_file(file)) throw DataError(name + ": is not a file");
+  if (!std::ifstream(file)) throw DataError(name + ": cannot be read");
   try {
     bag.open(name, rosbag::bagmode::Read);
   } catch (const rosbag::BagUnindexedException&) {
     throw DataError(name + ": has no index, its recording was cut off ('rosbag reindex' may save it)");
-  } catch (const rosbag::BagFormatException& error) {
-    throw DataError(fmt::format("{}: is not a bag or is cut off ({})", name, error.what()));
   } catch (const std::exception& error) {
-    throw DataError(fmt::format("{}: cannot be read as a bag ({})", name, error.what()));
+    throw DataError(fmt::format("{}: is not a bag or is cut off ({})", name, error.what()));
   }
 }
 
@@ -89,6 +90,17 @@ rosbag::CompressionType parseCompression(const std::string& name) {
   if (name == "lz4") return rosbag::compression::LZ4;
   if (name == "bz2") return rosbag::compression::BZ2;
   throw std::invalid_argument("compression is " + name + ", must be one of none, lz4, bz2");
+}
+
+boost::shared_ptr<ros::M_string> latchedTransforms() {
+  namespace traits = ros::message_traits;
+  auto header = boost::make_shared<ros::M_string>();
+  (*header)["type"] = traits::DataType<tf2_msgs::TFMessage>::value();
+  (*header)["md5sum"] = traits::MD5Sum<tf2_msgs::TFMessage>::value();
+  (*header)["message_definition"] = traits::Definition<tf2_msgs::TFMessage>::value();
+  (*header)["topic"] = "/tf_static";
+  (*header)["latching"] = "1";
+  return header;
 }
 
 BagWriter::BagWriter(fs::path file, rosbag::CompressionType compression)

@@ -61,18 +61,6 @@ tf2_msgs::TFMessage toTransform(double stamp, const std::string& parent, const s
   return message;
 }
 
-/// A player publishes a topic of such a connection latched: also late listeners learn the mounting.
-boost::shared_ptr<ros::M_string> latchedTransforms() {
-  namespace traits = ros::message_traits;
-  auto header = boost::make_shared<ros::M_string>();
-  (*header)["type"] = traits::DataType<tf2_msgs::TFMessage>::value();
-  (*header)["md5sum"] = traits::MD5Sum<tf2_msgs::TFMessage>::value();
-  (*header)["message_definition"] = traits::Definition<tf2_msgs::TFMessage>::value();
-  (*header)["topic"] = "/tf_static";
-  (*header)["latching"] = "1";
-  return header;
-}
-
 void writeOdometry(rosbag::Bag& bag, const OdometryPoint& point) {
   const ros::Time stamp(point.stamp);
   bag.write("/odom", stamp, toOdometry(point));

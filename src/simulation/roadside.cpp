@@ -48,6 +48,9 @@ class Side {
   void parkVehicle(double s) {
     constexpr double kInside = -1.15;  // [m]
     if (!isFree(s - 3.0, kInside) || !isFree(s + 3.0, kInside)) return;
+    for (const double reserved : style_.no_parking) {
+      if (std::abs(s - reserved) < 7.0) return;
+    }
     const Model model = random_.chance(0.12) ? makeVan(random_) : makeCar(random_);
     PathPoint place = beside(s + random_.uniform(-0.3, 0.3), kInside + random_.uniform(-0.1, 0.1));
     place.yaw += random_.uniform(-0.03, 0.03) + (random_.chance(0.2) ? kPi : 0.0);
@@ -120,6 +123,16 @@ void furnish(SceneBuilder& builder, const Path& path, double from, double to, co
   for (const double side : {-1.0, 1.0}) Side(builder, path, roadside, side).furnish(from, to);
 }
 
+void addCrossings(SceneBuilder& builder, const Path& path, int count, double slowest, double fastest) {
+  Random& random = builder.random();
+  for (int i = 0; i < count; ++i) {
+    Course course;
+    course.path = crossing(path.at(random.uniform(0.0, path.length())), 6.0);
+    course.speed = SpeedProfile(random.uniform(slowest, fastest));
+    builder.addClear(makePerson(random), course);
+  }
+}
+
 Model makeAnyVehicle(Random& random) {
   const double kind = random.uniform();
   if (kind < 0.75) return makeCar(random);
@@ -154,7 +167,7 @@ void populate(SceneBuilder& builder, const SharedPath& path, const Traffic& traf
     course.backwards = random.chance(0.5);
     const double side = random.chance(0.5) ? 1.0 : -1.0;
     course.lateral = side * (traffic.pavement + random.uniform(-0.5, 0.7));
-    course.speed = SpeedProfile(random.uniform(0.9, 1.7));
+    course.speed = SpeedProfile(random.uniform(traffic.slowest, traffic.fastest));
     builder.addClear(makePerson(random), course, horizon);
   }
 }

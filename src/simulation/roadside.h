@@ -15,6 +15,7 @@ struct Roadside {
   double gardens = 0.5;      ///< chance of a fence, hedge or wall before a house
   double bushes = 0.2;       ///< chance every 5 m, behind the pavement
   float sway = 0.0f;         ///< of everything with leaves [m]
+  std::vector<double> no_parking;  ///< places along the path where nobody parks [m]
 };
 
 /// Both sides of the path between two places, with nothing on any road. Add the roads to the ground first.
@@ -26,11 +27,16 @@ struct Traffic {
   double oncoming_speed = 9.0;  ///< [m/s]
   int walkers = 0;         ///< on the pavements
   double pavement = 6.5;   ///< their middle beside the road's [m]
+  double slowest = 0.9;    ///< walker [m/s]
+  double fastest = 1.7;
   int cyclists = 0;
 };
 
 /// Vehicles against the path's direction, people on both pavements, cyclists both ways: meeting nobody for `horizon` [s].
 void populate(SceneBuilder& builder, const SharedPath& path, const Traffic& traffic, double horizon = 30.0);
+
+/// People who cross the road here and there.
+void addCrossings(SceneBuilder& builder, const Path& path, int count, double slowest = 1.0, double fastest = 1.5);
 
 /// A car mostly, now and then a van, seldom a lorry.
 Model makeAnyVehicle(Random& random);

@@ -63,7 +63,15 @@ Eigen::Isometry3d suspension(const Course& course, double time) {
 
 PathPoint Course::at(double time) const {
   const double covered = way(time);
-  PathPoint point = path->at(start + (backwards ? -covered : covered), lateral);
+  double aside = 0.0;
+  double heading = 0.0;
+  if (shift_length > 0.0) {
+    const double u = std::clamp((covered - shift_begin) / shift_length, 0.0, 1.0);
+    aside = shift * u * u * (3.0 - 2.0 * u);
+    heading = std::atan(shift * 6.0 * u * (1.0 - u) / shift_length);
+  }
+  PathPoint point = path->at(start + (backwards ? -covered : covered), lateral + aside);
+  point.yaw += backwards ? -heading : heading;
   if (backwards) {
     point.yaw += kPi;
     point.curvature = -point.curvature;

@@ -95,13 +95,7 @@ void addFarTraffic(SceneBuilder& builder, const Ring& ring) {
 
 /// People walking on both pavements, and across the road.
 void addPeople(SceneBuilder& builder, const SharedPath& road) {
-  Random& random = builder.random();
-  for (int i = 0; i < 8; ++i) {
-    Course course;
-    course.path = crossing(road->at(random.uniform(8.0, road->length() - 8.0)), 6.0);
-    course.speed = SpeedProfile(random.uniform(0.9, 1.5));
-    builder.addClear(makePerson(random), course);
-  }
+  addCrossings(builder, *road, 8);
   Traffic traffic;
   traffic.walkers = 24;
   populate(builder, road, traffic);

@@ -120,7 +120,7 @@ void SceneBuilder::parked(const PathPoint& where, const Model& model) {
   course.path = std::make_shared<const Path>(Path(where.position, where.yaw).line(1.0));
   const Mover standing{model, course};
   const Eigen::Isometry3d pose = poseOf(standing, scene_.ground, 0.0);
-  for (const Part& part : model.parts) {
+  for (const Part& part : model.posed(0.0)) {
     Fixture fixture;
     fixture.center = pose * part.shape.center.cast<double>();
     fixture.shape = part.shape;
@@ -175,6 +175,25 @@ void SceneBuilder::picketFence(const Path& path, double from, double to, double 
   }
 }
 
+void SceneBuilder::bridge(const Path& path, double s, double half_span, double clearance, double width) {
+  constexpr double kStrip = 4.0;  // [m]
+  const double base = scene_.ground.height(path.at(s).position);
+  const auto aboveGround = [&](const PathPoint& at) { return base + clearance - scene_.ground.height(at.position); };
+  for (double across = -half_span; across <= half_span; across += kStrip) {
+    const PathPoint at = path.at(s, across);
+    block(at, {width, kStrip, 0.9}, 52, 0.35f, aboveGround(at));
+    for (const double edge : {-0.5, 0.5}) {
+      PathPoint parapet = at;
+      parapet.position += edge * width * at.forward();
+      block(parapet, {0.2, kStrip, 1.0}, 52, 0.35f, aboveGround(at) + 0.9);
+    }
+  }
+  for (const double side : {-1.0, 1.0}) {
+    const PathPoint at = path.at(s, side * (half_span - kStrip));
+    for (const double along : {-0.3, 0.3}) pole(at.position + along * width * at.forward(), clearance, 0.4, 52);
+  }
+}
+
 void SceneBuilder::ego(const Course& course) {
   scene_.ego.course = course;
   Eigen::Isometry3d& mounting = scene_.ego.base_from_sensor;
@@ -205,6 +224,12 @@ bool SceneBuilder::addClear(const Model& model, Course course, double horizon) {
     return true;
   }
   return false;
+}
+
+SharedPath oval(double straight, double radius, double yaw) {
+  Path path({0.0, 0.0}, yaw);
+  for (int i = 0; i < 2; ++i) path.line(straight).arc(radius, kPi);
+  return std::make_shared<const Path>(path.wrap());
 }
 
 SharedPath crossing(const PathPoint& middle, double half_length) {

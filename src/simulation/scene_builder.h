@@ -27,6 +27,7 @@ class SceneBuilder {
   void bush(const Eigen::Vector2d& place, double width, double height, float sway = 0.0f);
   void pole(const Eigen::Vector2d& place, double height, double radius, std::uint32_t label = 80);
   void sign(const PathPoint& place);
+  /// Something of a kind that moves, standing: a parked car, somebody who waits.
   void parked(const PathPoint& place, const Model& model);
   /// Upright slats between two places.
   void slats(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double height);
@@ -39,6 +40,8 @@ class SceneBuilder {
 
   /// The sensor on the vehicle's roof, with the small tilt of a real mounting.
   void ego(const Course& course);
+  /// A deck over the whole road, `width` wide, on pillars beside it.
+  void bridge(const Path& path, double s, double half_span, double clearance, double width);
   void add(const Model& model, const Course& course);
   /// Tries places along the path for the start until the mover meets neither the ego vehicle nor another mover
   /// within `horizon` [s]; false, and nothing added, when there is none.
@@ -55,6 +58,8 @@ class SceneBuilder {
   std::vector<Eigen::Vector2d> footprints_;  // of the movers, half edges
 };
 
+/// A circuit of two straights and two half circles, to the left.
+SharedPath oval(double straight, double radius, double yaw);
 /// A person's or cyclist's loop across a road: over, back beside, for ever.
 SharedPath crossing(const PathPoint& middle_of_road, double half_length);
 /// `mean` with a slow swing, the same for everyone with the same phase: gaps in a lane stay open.

@@ -18,6 +18,19 @@ constexpr Entry kScenes[] = {
     {"street", "round a block of houses, parked cars on both sides, traffic, cyclists, people", makeStreet},
     {"motorway", "three lanes each way at 29 m/s, lorries, guard rails, bridges", makeMotorway},
     {"bend", "a roundabout and the bends of the road that leads back to it", makeBend},
+    {"lead_vehicle", "a vehicle ahead at the ego vehicle's own speed", makeLeadVehicle},
+    {"oncoming", "a country road with oncoming traffic at 30 m/s", makeOncoming},
+    {"pedestrian_slow", "people on foot at 0.8 m/s", makePedestrianSlow},
+    {"crowd", "a shopping street full of people, some of them standing", makeCrowd},
+    {"stop_and_go", "the car ahead brakes to a stop and starts again, and so does the oncoming traffic", makeStopAndGo},
+    {"parked_car_leaves", "parked cars pull out on both sides", makeParkedCarLeaves},
+    {"foliage", "hedges, bushes and trees in a light wind, people and cyclists between them", makeFoliage},
+    {"fences", "picket fences and guard rails at grazing angles, people behind them", makeFences},
+    {"bridges", "bridges, gantries and branches overhead", makeBridges},
+    {"slope", "over a hill of 7 to 11 %", makeSlope},
+    {"turning", "round and round at 30 degrees a second", makeTurning},
+    {"standstill_start", "stands at a traffic light, then starts", makeStandstillStart},
+    {"empty_room", "a room at rest, seen by a 16-beam sensor: nothing moves", makeEmptyRoom},
 };
 
 const Entry* find(const std::string& name) {
@@ -43,6 +56,8 @@ const std::vector<std::string>& sceneNames() {
   }();
   return names;
 }
+
+bool isScene(const std::string& name) { return find(name) != nullptr; }
 
 std::string sceneMeaning(const std::string& scene) { return entryOf(scene).meaning; }
 

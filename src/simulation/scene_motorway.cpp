@@ -12,14 +12,6 @@ constexpr double kHalfWidth = 16.0;     // middle to the outer edge of the hard 
 constexpr double kInnerLane = 3.7;      // middle of the road to the middle of the fast lane [m]
 constexpr double kLaneWidth = 3.75;     // [m]
 
-SharedPath oval(Random& random) {
-  const double straight = random.uniform(900.0, 1300.0);
-  const double radius = random.uniform(450.0, 600.0);
-  Path path({0.0, 0.0}, random.uniform(-kPi, kPi));
-  for (int i = 0; i < 2; ++i) path.line(straight).arc(radius, kPi);
-  return std::make_shared<const Path>(path.wrap());
-}
-
 double laneAt(int lane) { return kInnerLane + kLaneWidth * lane; }
 
 /// Lane 0 is the fast one. All vehicles of a lane keep their gaps.
@@ -52,19 +44,6 @@ void fillLane(SceneBuilder& builder, const SharedPath& path, int lane, bool oppo
   }
 }
 
-void addBridge(SceneBuilder& builder, const Path& path, double s) {
-  const PathPoint middle = path.at(s);
-  for (double across = -28.0; across <= 28.0; across += 4.0) {
-    PathPoint place = path.at(s, across);
-    builder.block(place, {9.0, 4.0, 1.1}, 52, 0.35f, 5.4);
-  }
-  for (const double lateral : {-18.5, 0.0, 18.5}) {
-    for (const double along : {-2.5, 2.5}) {
-      builder.pole(middle.position + lateral * middle.left() + along * middle.forward(), 5.6, 0.4, 52);
-    }
-  }
-}
-
 void addGantry(SceneBuilder& builder, const Path& path, double s) {
   for (const double lateral : {-17.2, -0.9}) builder.pole(path.at(s, lateral).position, 7.0, 0.18);
   for (int lane = 0; lane < 3; ++lane) builder.block(path.at(s, -laneAt(lane)), {0.3, 3.0, 1.8}, 81, 0.8f, 5.3);
@@ -89,7 +68,10 @@ void addBorders(SceneBuilder& builder, const Path& path) {
       }
     }
   }
-  for (double s = 120.0; s < length; s += random.uniform(350.0, 600.0)) addBridge(builder, path, s);
+  for (double s = 120.0; s < length; s += random.uniform(350.0, 600.0)) {
+    builder.bridge(path, s, 26.0, 5.4, 9.0);
+    for (const double along : {-2.5, 2.5}) builder.pole(path.at(s + along).position, 5.4, 0.4, 52);
+  }
   for (double s = 260.0; s < length; s += random.uniform(400.0, 700.0)) addGantry(builder, path, s);
 }
 
@@ -103,7 +85,9 @@ Scene makeMotorway(std::uint64_t seed) {
   style.roughness = 0.08;
   SceneBuilder builder(style, seed);
   Random& random = builder.random();
-  const SharedPath path = oval(random);
+  const double straight = random.uniform(900.0, 1300.0);
+  const double radius = random.uniform(450.0, 600.0);
+  const SharedPath path = oval(straight, radius, random.uniform(-kPi, kPi));
   builder.ground().add({*path, kHalfWidth});
   addBorders(builder, *path);
 

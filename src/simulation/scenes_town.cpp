@@ -18,17 +18,6 @@ SharedPath blockCircuit(Random& random) {
   return std::make_shared<const Path>(path.wrap());
 }
 
-/// People who cross the road here and there.
-void addCrossings(SceneBuilder& builder, const Path& path, int count) {
-  Random& random = builder.random();
-  for (int i = 0; i < count; ++i) {
-    Course course;
-    course.path = crossing(path.at(random.uniform(0.0, path.length())), 6.0);
-    course.speed = SpeedProfile(random.uniform(1.0, 1.5));
-    builder.addClear(makePerson(random), course);
-  }
-}
-
 constexpr double kArm = 170.0;  // of a crossroads: the traffic returns out of sight [m]
 /// Everyone's round takes as long, or a whole fraction: who met nobody once never does.
 constexpr double kRound = 36.0;  // [s]

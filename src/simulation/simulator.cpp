@@ -1,6 +1,5 @@
 #include "donex/simulation/simulator.h"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -31,8 +30,7 @@ std::string listed(const std::vector<std::string>& faults) {
 /// Checks everything that can be wrong before anything is built.
 SimulatorOptions checked(const std::string& scene, const SimulatorOptions& options) {
   std::vector<std::string> faults = options.faults();
-  const auto& names = sceneNames();
-  if (std::find(names.begin(), names.end(), scene) == names.end()) faults.push_back(unknownScene(scene));
+  if (!isScene(scene)) faults.push_back(unknownScene(scene));
   if (!faults.empty()) throw std::invalid_argument(listed(faults));
   return options;
 }

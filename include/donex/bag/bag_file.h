@@ -20,6 +20,10 @@ rosbag::CompressionType compressionOf(const std::filesystem::path& file);
 /// "none", "lz4" or "bz2"; throws std::invalid_argument for another text.
 rosbag::CompressionType parseCompression(const std::string& name);
 
+/// The connection header for /tf_static: a player publishes a topic of such a connection latched, so that also late
+/// listeners learn the mounting.
+boost::shared_ptr<ros::M_string> latchedTransforms();
+
 /// Writes a bag under a temporary name beside its own; commit() gives it its own name. Never half a bag.
 class BagWriter {
  public:

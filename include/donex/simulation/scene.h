@@ -30,6 +30,9 @@ struct Course {
   double start = 0.0;    ///< where on the path at the profile's first knot [m]
   double lateral = 0.0;  ///< to the left of the path [m]
   bool backwards = false;  ///< against the path's direction
+  double shift = 0.0;         ///< further to the left in the end: pulls out, or changes the lane [m]
+  double shift_begin = 0.0;   ///< after this way [m]
+  double shift_length = 0.0;  ///< over this way; 0: no shift [m]
   SpeedProfile speed{0.0};
 
   double way(double time) const { return speed.distance(time); }
@@ -59,8 +62,6 @@ struct Scene {
 
 /// Same name and seed, same scene. Throws std::invalid_argument for an unknown name.
 Scene makeScene(const std::string& name, std::uint64_t seed);
-/// The message for a scene that isn't there: names those that are.
-std::string unknownScene(const std::string& name);
 
 /// Pose of the mover on the ground: it leans with the slope along its way.
 Eigen::Isometry3d poseOf(const Mover& mover, const Ground& ground, double time);

@@ -50,6 +50,9 @@ inline constexpr double kSettleTime = 1.0;   ///< slower for this long: it stand
 
 /// intersection street motorway bend, and the hard cases; in the order of the documentation.
 const std::vector<std::string>& sceneNames();
+bool isScene(const std::string& name);
+/// The message for a scene that isn't there: names those that are.
+std::string unknownScene(const std::string& name);
 /// One sentence. Throws std::invalid_argument for an unknown name.
 std::string sceneMeaning(const std::string& scene);
 

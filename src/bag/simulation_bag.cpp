@@ -1,0 +1,47 @@
+#include "donex/bag/simulation_bag.h"
+
+#include <tf2_msgs/TFMessage.h>
+
+#include "donex/bag/bag_file.h"
+#include "donex/ros/simulation_messages.h"
+
+namespace donex {
+namespace {
+
+tf2_msgs::TFMessage only(const geometry_msgs::TransformStamped& transform) {
+  tf2_msgs::TFMessage message;
+  message.transforms.push_back(transform);
+  return message;
+}
+
+void write(rosbag::Bag& bag, const OdometrySample& sample, const SimulationFrames& frames) {
+  const ros::Time stamp(sample.stamp);
+  bag.write("/odom", stamp, toOdometry(sample, frames));
+  bag.write("/tf", stamp, only(toTransform(sample, frames)));
+}
+
+}  // namespace
+
+SimulationBagSummary writeSimulationBag(simulation::Simulator& simulator, const std::filesystem::path& file,
+                                        rosbag::CompressionType compression, const std::function<void()>& progress) {
+  const SimulationFrames frames;
+  SimulationBagSummary summary;
+  BagWriter writer(file, compression);
+  simulation::SimulatedScan scan;
+  while (simulator.next(scan)) {
+    if (summary.clouds == 0) {
+      const double start = std::min(scan.stamp, scan.odometry.front().stamp);
+      const auto mounting = only(mountingOf(scan.base_from_sensor, start, frames));
+      writer.bag().write("/tf_static", ros::Time(start), mounting, latchedTransforms());
+    }
+    for (const OdometrySample& sample : scan.odometry) write(writer.bag(), sample, frames);
+    writer.bag().write("/points", ros::Time(scan.stamp), toCloud(scan, frames));
+    summary.odometry += scan.odometry.size();
+    ++summary.clouds;
+    progress();
+  }
+  writer.commit();
+  return summary;
+}
+
+}  // namespace donex

@@ -1,0 +1,16 @@
+// The simulated LiDAR as a plain node.
+#include <ros/ros.h>
+
+#include "donex/ros/simulated_lidar.h"
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "simulated_lidar");
+  try {
+    const donex::SimulatedLidar lidar(ros::NodeHandle(), ros::NodeHandle("~"));
+    ros::spin();
+  } catch (const std::exception& error) {
+    ROS_FATAL("%s", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,155 @@
+// A simulated drive as a sequence or as a bag, with ground truth.
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "donex/bag/bag_file.h"
+#include "donex/bag/simulation_bag.h"
+#include "donex/core/ego_motion.h"
+#include "donex/io/sequence.h"
+#include "donex/simulation/simulator.h"
+#include "program.h"
+
+namespace donex {
+namespace {
+
+using simulation::OptionInfo;
+using simulation::SimulatedScan;
+using simulation::Simulator;
+using simulation::SimulatorOptions;
+
+struct Arguments {
+  std::string scene, out;
+  std::string poses = "true";
+  std::string compression = "none";
+  SimulatorOptions options;
+};
+
+/// Adds every option of the simulator by its name.
+struct OptionAdder {
+  CLI::App& app;
+
+  template <class Number>
+  void operator()(const OptionInfo& info, Number& value, Number, Number) {
+    const std::string unit = *info.unit == '\0' ? "" : fmt::format(" [{}]", info.unit);
+    app.add_option(flagOf(info), value, fmt::format("{}{}; by default {}", info.meaning, unit, value));
+  }
+  void operator()(const OptionInfo& info, bool& value) { app.add_flag(flagOf(info), value, info.meaning); }
+
+  static std::string flagOf(const OptionInfo& info) {
+    std::string flag = std::string("--") + info.name;
+    std::replace(flag.begin(), flag.end(), '_', '-');
+    return flag;
+  }
+};
+
+std::string listOfScenes() {
+  std::string text;
+  for (const std::string& name : simulation::sceneNames()) {
+    text += fmt::format("{:<18} {}\n", name, simulation::sceneMeaning(name));
+  }
+  return text;
+}
+
+void check(const Arguments& arguments) {
+  std::vector<std::string> faults = arguments.options.faults();
+  if (!simulation::isScene(arguments.scene)) faults.push_back(simulation::unknownScene(arguments.scene));
+  const bool endless = arguments.options.duration == 0.0;
+  if (endless) faults.push_back("duration is 0: no file is endless");
+  std::string text;
+  for (const std::string& fault : faults) text += (text.empty() ? "" : "\n") + fault;
+  if (!text.empty()) throw ArgumentError(text);
+}
+
+/// The scan as the layout holds it; its pose is the true one or what the odometry says.
+class SequenceScans {
+ public:
+  explicit SequenceScans(bool from_odometry) : from_odometry_(from_odometry) {
+    EgoMotion::Options options;
+    options.max_extrapolation = 1.0;  // odometry that comes late or seldom: the newest is known
+    motion_ = EgoMotion(options);
+  }
+
+  SequenceScan convert(const SimulatedScan& scan) {
+    for (const OdometrySample& sample : scan.odometry) motion_.add(sample);
+    SequenceScan result;
+    result.stamp = scan.stamp;
+    for (const simulation::SimulatedEcho& echo : scan.echoes) {
+      result.echoes.push_back(echo.position);
+      result.intensities.push_back(echo.intensity);
+    }
+    const Eigen::Isometry3d odom_from_base = from_odometry_ ? reported(scan.stamp) : scan.odom_from_base;
+    result.odom_from_sensor = Pose::fromIsometry(odom_from_base * scan.base_from_sensor);
+    return result;
+  }
+
+ private:
+  Eigen::Isometry3d reported(double stamp) const {
+    const auto pose = motion_.poseAt(stamp);
+    if (!pose) throw DataError(fmt::format("no pose at {} s: {}", stamp, describe(pose.fault())));
+    return *pose;
+  }
+
+  bool from_odometry_;
+  EgoMotion motion_;
+};
+
+struct Count {
+  std::size_t echoes = 0, moving = 0;
+};
+
+void writeSequence(const CLI::App& app, const Arguments& arguments) {
+  if (arguments.options.distortion) {
+    warn(app, "the layout of a sequence has no time for each echo: the distortion cannot be undone; write a bag");
+  }
+  Simulator simulator(arguments.scene, arguments.options);
+  SequenceWriter writer(arguments.out);
+  SequenceScans scans(arguments.poses == "odometry");
+  std::optional<ProgressBar> progress(simulator.size());
+  SimulatedScan scan;
+  Count count;
+  while (simulator.next(scan)) {
+    writer.add(scans.convert(scan), scan.labels);
+    count.echoes += scan.echoes.size();
+    count.moving += static_cast<std::size_t>(std::count_if(scan.labels.begin(), scan.labels.end(), isMoving));
+    progress->advance();
+  }
+  progress.reset();
+  const double percent = 100.0 * static_cast<double>(count.moving) / static_cast<double>(std::max<std::size_t>(count.echoes, 1));
+  fmt::print("{} scans, {} echoes, {:.2f} % of them moving\n", writer.size(), count.echoes, percent);
+}
+
+void writeBag(Arguments& arguments) {
+  // A bag knows no time before 0 and tf none at 0.
+  arguments.options.start_stamp = std::max(arguments.options.start_stamp, 2.0);
+  Simulator simulator(arguments.scene, arguments.options);
+  std::optional<ProgressBar> progress(simulator.size());
+  const auto summary = writeSimulationBag(simulator, arguments.out, parseCompression(arguments.compression),
+                                          [&] { progress->advance(); });
+  progress.reset();
+  fmt::print("{} clouds on /points, {} odometry messages on /odom, tf odom <- base_link <- velodyne\n", summary.clouds,
+             summary.odometry);
+}
+
+void run(const CLI::App& app, Arguments& arguments) {
+  check(arguments);
+  const bool is_bag = std::filesystem::path(arguments.out).extension() == ".bag";
+  is_bag ? writeBag(arguments) : writeSequence(app, arguments);
+}
+
+}  // namespace
+}  // namespace donex
+
+int main(int argc, char** argv) {
+  CLI::App app("Writes a simulated drive with ground truth.", "donex_simulate");
+  donex::Arguments arguments;
+  app.footer("Scenes:\n" + donex::listOfScenes());
+  app.add_option("SCENE", arguments.scene, "one of the scenes below")->required();
+  app.add_option("OUT", arguments.out, "a .bag, or a directory for a sequence (SemanticKITTI layout)")->required();
+  app.add_option("--poses", arguments.poses, "of a sequence: true, or odometry with its errors; by default true")
+      ->check(CLI::IsMember({"true", "odometry"}));
+  app.add_option("--compression", arguments.compression, "of a bag: none, lz4 or bz2; by default none")
+      ->check(CLI::IsMember({"none", "lz4", "bz2"}));
+  visitOptions(arguments.options, donex::OptionAdder{app});
+  return donex::runProgram(app, argc, argv, [&] { donex::run(app, arguments); });
+}
