@@ -5,6 +5,7 @@
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "simulated_lidar");
+  const ros::NodeHandle keep_alive;  // without one, ROS shuts down before the error below is logged
   try {
     const donex::SimulatedLidar lidar(ros::NodeHandle(), ros::NodeHandle("~"));
     ros::spin();
