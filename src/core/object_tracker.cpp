@@ -25,9 +25,11 @@ bool alike(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 }  // namespace
 
+bool ObjectTracker::isTooLong(const Candidate& candidate) { return candidate.extent().maxCoeff() > kLongest; }
+
 bool ObjectTracker::isNew(const Candidate& candidate) const {
   const double fresh = candidate.new_echoes;
-  const bool enough = candidate.new_echoes >= config_.min_echoes;
+  const bool enough = candidate.new_echoes >= config_.min_echoes && !isTooLong(candidate);
   const bool outweighs = fresh > config_.new_share * (fresh + candidate.settled_echoes);
   return enough && outweighs && fresh > kLeastShare * static_cast<double>(candidate.echoes.size());
 }
@@ -40,7 +42,7 @@ void ObjectTracker::update(double stamp, const std::vector<Eigen::Vector3f>& poi
   const Eigen::Isometry3d points_from_odom = odom_from_points.inverse();
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     Candidate& candidate = candidates[i];
-    if (candidate.extent().maxCoeff() > kLongest) continue;
+    if (isTooLong(candidate)) continue;
     if (track_of_[i] < 0) {
       track_of_[i] = static_cast<int>(tracks_.size());
       tracks_.emplace_back();

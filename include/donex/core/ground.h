@@ -27,12 +27,18 @@ class Ground {
  private:
   int cellOf(const Eigen::Vector3f& point) const;
   float startingHeight();
-  float expectedAt(int cell, float fallback) const;
+  /// What the ground of nearer cells lets expect.
+  struct Continuation {
+    float height;
+    float unseen;  ///< how far away the ground was last seen [m]
+  };
+  Continuation continueTo(int cell, float start) const;
 
   int width_;                            ///< cells along an edge
   Eigen::Vector3f sensor_ = Eigen::Vector3f::Zero();
   std::vector<int> outwards_;            ///< cells by distance from the sensor
   std::vector<float> lowest_, ground_;   ///< by cell [m]
+  std::vector<float> unseen_;            ///< by cell: how far the ground is only continued [m]
   std::vector<float> near_;
 };
 

@@ -31,6 +31,9 @@ class ObjectTracker {
  public:
   explicit ObjectTracker(const ObjectConfig& config) : config_(config) {}
 
+  /// Longer than any vehicle: a wall, a hedge, or things that touch.
+  static bool isTooLong(const Candidate& candidate);
+
   /// Enough of the candidate is new, taken alone.
   bool isNew(const Candidate& candidate) const;
 
