@@ -6,10 +6,12 @@
 #include <fstream>
 #include <map>
 #include <optional>
+#include <set>
 #include <stdexcept>
 
 #include <boost/make_shared.hpp>
 #include <fmt/format.h>
+#include <rosbag/view.h>
 #include <tf2_msgs/TFMessage.h>
 
 namespace donex {
@@ -52,6 +54,19 @@ std::optional<Fields> readRecord(std::istream& stream) {
   if (!data_length) return std::nullopt;
   stream.seekg(*data_length, std::ios::cur);
   return parseFields(header);
+}
+
+/// The library numbers a new connection by the count of those that are there: where numbers were left out, it
+/// would take one that is in use, and mix two topics.
+void requireFreeConnection(const fs::path& file) {
+  rosbag::Bag bag;
+  openBag(file, bag);
+  rosbag::View view(bag);
+  std::set<std::uint32_t> ids;
+  for (const rosbag::ConnectionInfo* connection : view.getConnections()) ids.insert(connection->id);
+  const bool is_free = ids.empty() || *ids.rbegin() < ids.size();
+  if (is_free) return;
+  throw DataError(file.string() + ": its connections are not numbered 0, 1, 2, ...; 'rosbag filter IN OUT True' does that");
 }
 
 }  // namespace
@@ -103,14 +118,29 @@ boost::shared_ptr<ros::M_string> latchedTransforms() {
   return header;
 }
 
-BagWriter::BagWriter(fs::path file, rosbag::CompressionType compression)
-    // The process's number: two runs that write the same file don't write into each other.
-    : file_(std::move(file)), temporary_(fmt::format("{}.{}.part", file_.string(), getpid())) {
+// The process's number: two runs that write the same file don't write into each other.
+BagWriter::BagWriter(fs::path file)
+    : file_(std::move(file)), temporary_(fmt::format("{}.{}.part", file_.string(), getpid())) {}
+
+BagWriter::BagWriter(fs::path file, rosbag::CompressionType compression) : BagWriter(std::move(file)) {
   try {
     bag_.open(temporary_.string(), rosbag::bagmode::Write);
     bag_.setCompression(compression);
   } catch (const std::exception& error) {
     throw DataError(fmt::format("{}: cannot be written ({})", file_.string(), error.what()));
+  }
+}
+
+BagWriter::BagWriter(fs::path file, const fs::path& original) : BagWriter(std::move(file)) {
+  requireFreeConnection(original);
+  try {
+    fs::copy_file(original, temporary_);
+    fs::permissions(temporary_, fs::perms::owner_write, fs::perm_options::add);
+    bag_.open(temporary_.string(), rosbag::bagmode::Append);
+    bag_.setCompression(compressionOf(original));
+  } catch (const std::exception& error) {
+    throw DataError(fmt::format("{}: cannot be written as a copy of {} ({})", file_.string(), original.string(),
+                                error.what()));
   }
 }
 

@@ -13,7 +13,7 @@ namespace donex {
 namespace fs = std::filesystem;
 namespace {
 
-/// Feeds a bag's messages to the pipeline as the node gets them, and writes what comes out.
+/// Feeds a bag's messages to the pipeline as the node gets them, and adds what comes out to the copy.
 class Labeler {
  public:
   Labeler(const LabelBagOptions& options, rosbag::Bag& out, LabelBagSummary& summary)
@@ -95,7 +95,6 @@ void Labeler::feed(const rosbag::MessageInstance& message) {
 
 void Labeler::add(const rosbag::MessageInstance& message) {
   now_ = message.getTime();
-  out_.write(message.getTopic(), now_, message, message.getConnectionHeader());
   ++summary_.messages;
   feed(message);
   while (pipeline_.step(now_.toSec())) {
@@ -137,7 +136,7 @@ LabelBagSummary labelBag(const fs::path& in, const fs::path& out, const LabelBag
   openBag(in, input);
   rosbag::View view(input);
   LabelBagSummary summary = chooseTopics(view, options, in.string());
-  BagWriter output(out, compressionOf(in));
+  BagWriter output(out, in);
   Labeler labeler(options, output.bag(), summary);
   try {
     for (const rosbag::MessageInstance& message : view) {

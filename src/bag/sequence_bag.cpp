@@ -18,6 +18,9 @@ constexpr const char* kOdomFrame = "odom";
 constexpr const char* kBaseFrame = "base_link";
 constexpr const char* kSensorFrame = "velodyne";
 
+/// Between messages of the same stamp: at equal times a bag's reader takes any order.
+const ros::Duration kStep(0, 1000);
+
 geometry_msgs::Quaternion toMessage(const Eigen::Quaterniond& q) {
   geometry_msgs::Quaternion message;
   message.x = q.x();
@@ -64,7 +67,7 @@ tf2_msgs::TFMessage toTransform(double stamp, const std::string& parent, const s
 void writeOdometry(rosbag::Bag& bag, const OdometryPoint& point) {
   const ros::Time stamp(point.stamp);
   bag.write("/odom", stamp, toOdometry(point));
-  bag.write("/tf", stamp, toTransform(point.stamp, kOdomFrame, kBaseFrame, point.odom_from_base));
+  bag.write("/tf", stamp + kStep, toTransform(point.stamp, kOdomFrame, kBaseFrame, point.odom_from_base));
 }
 
 /// Whole seconds, so that the fractions of the stamps stay.
@@ -80,10 +83,14 @@ std::vector<OdometryPoint> odometryOf(const SequenceReader& sequence, const Odom
   return odometryAlong(stamps, poses, rhythm);
 }
 
-void checkLastStamp(double stamp, const std::filesystem::path& directory) {
+/// Times in other units than seconds would fill memory with odometry.
+void checkTimes(const SequenceReader& sequence, double odometry_rate) {
   constexpr double kEndOfTime = 4294967295.0;  // seconds are 32 bits in ROS
-  if (stamp < kEndOfTime) return;
-  throw DataError(fmt::format("{}: the time {} s is beyond what ROS can hold", directory.string(), stamp));
+  constexpr double kMostMessages = 1e7;
+  const double first = sequence.stamp(0), last = sequence.stamp(sequence.size() - 1);
+  const std::string times = fmt::format("{}: the times run from {} to {} s", sequence.directory().string(), first, last);
+  if (last + shiftFor(first) >= kEndOfTime) throw DataError(times + ", beyond what ROS can hold");
+  if ((last - first) * odometry_rate > kMostMessages) throw DataError(times + ", too long for this rate of odometry");
 }
 
 }  // namespace
@@ -116,22 +123,22 @@ sensor_msgs::PointCloud2Ptr toCloud(const SequenceScan& scan) {
 
 SequenceBagSummary writeSequenceBag(const SequenceReader& sequence, const std::filesystem::path& file,
                                     const SequenceBagOptions& options, const std::function<void()>& progress) {
+  checkTimes(sequence, options.odometry.rate);
   auto odometry = odometryOf(sequence, options.odometry);
   const double earliest = std::min(sequence.stamp(0), odometry.front().stamp);
   const SequenceBagSummary summary{sequence.size(), odometry.size(), shiftFor(earliest)};
   for (OdometryPoint& point : odometry) point.stamp += summary.shift;
-  checkLastStamp(odometry.back().stamp, sequence.directory());
 
   BagWriter writer(file, options.compression);
   const double start = earliest + summary.shift;
-  writer.bag().write("/tf_static", ros::Time(start), toTransform(start, kBaseFrame, kSensorFrame, Pose()),
+  writer.bag().write("/tf_static", ros::Time(start) - kStep, toTransform(start, kBaseFrame, kSensorFrame, Pose()),
                      latchedTransforms());
   auto next = odometry.begin();
   for (std::size_t i = 0; i < sequence.size(); ++i) {
     SequenceScan scan = sequence.scan(i);
     scan.stamp += summary.shift;
     for (; next != odometry.end() && next->stamp <= scan.stamp; ++next) writeOdometry(writer.bag(), *next);
-    writer.bag().write("/points", ros::Time(scan.stamp), toCloud(scan));
+    writer.bag().write("/points", ros::Time(scan.stamp) + kStep + kStep, toCloud(scan));
     progress();
   }
   for (; next != odometry.end(); ++next) writeOdometry(writer.bag(), *next);

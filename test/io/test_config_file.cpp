@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "io/io_support.h"
+#include "support/temporary_directory.h"
 
 #include "donex/io/config_file.h"
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "donex/io/evaluation.h"
-#include "io/io_support.h"
+#include "support/sequences.h"
 
 namespace donex {
 namespace {

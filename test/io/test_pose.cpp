@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "io/io_support.h"
+#include "support/sequences.h"
 
 #include "donex/core/rigid_motion.h"
 #include "donex/io/pose.h"

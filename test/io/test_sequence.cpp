@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "io/io_support.h"
+#include "support/sequences.h"
+#include "support/temporary_directory.h"
 
 namespace donex {
 namespace {

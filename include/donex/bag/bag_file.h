@@ -27,8 +27,13 @@ boost::shared_ptr<ros::M_string> latchedTransforms();
 /// Writes a bag under a temporary name beside its own; commit() gives it its own name. Never half a bag.
 class BagWriter {
  public:
-  /// Throws DataError when the file cannot be created.
+  /// A new bag. Throws DataError when the file cannot be created.
   BagWriter(std::filesystem::path file, rosbag::CompressionType compression);
+
+  /// A copy of the bag `original`, byte for byte, to which messages can be added; they are compressed as its own.
+  /// Throws DataError, also for the rare bag that the rosbag library cannot append to soundly.
+  BagWriter(std::filesystem::path file, const std::filesystem::path& original);
+
   /// Without commit() nothing remains.
   ~BagWriter();
   BagWriter(const BagWriter&) = delete;
@@ -40,6 +45,8 @@ class BagWriter {
   void commit();
 
  private:
+  explicit BagWriter(std::filesystem::path file);
+
   std::filesystem::path file_;
   std::filesystem::path temporary_;
   rosbag::Bag bag_;

@@ -32,8 +32,8 @@ struct LabelBagSummary {
 /// `progress` hears how many of how many messages are done.
 using LabelBagProgress = std::function<void(std::size_t done, std::size_t total)>;
 
-/// Copies every message of `in` (order, time, connection header, compression) to `out`, and adds the labelled
-/// clouds at the time of the message that completed them, as a recording of the live node would. What the node
+/// Copies `in` byte for byte (so order, times, connection headers and compression are kept) to `out`, and adds the
+/// labelled clouds at the time of the message that completed them, as a recording of the live node would. What the node
 /// would drop is dropped here. Memory does not grow with the bag. `out` appears whole or not at all.
 /// Throws DataError: `in` is no sound bag, has not the topics (the message lists those it has), or not one cloud
 /// could be labelled. Throws std::invalid_argument with every fault of the configuration.

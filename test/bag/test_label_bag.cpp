@@ -1,0 +1,178 @@
+#include <gtest/gtest.h>
+
+#include "bag/bags.h"
+#include "donex/bag/bag_file.h"
+
+namespace donex {
+namespace {
+
+namespace fs = std::filesystem;
+using sensor_msgs::PointCloud2;
+using test::TemporaryDirectory;
+constexpr const char* kLabeled = "/donex/labeled_points";
+
+/// The bytes of the field `dynamic`.
+std::vector<std::uint8_t> dynamicOf(const PointCloud2& cloud) {
+  std::vector<std::uint8_t> labels;
+  for (const auto& field : cloud.fields) {
+    if (field.name != "dynamic") continue;
+    for (std::size_t i = 0; i < cloud.width; ++i) labels.push_back(cloud.data[i * cloud.point_step + field.offset]);
+  }
+  return labels;
+}
+
+/// What the detector says to the sequence itself.
+std::vector<std::vector<std::uint8_t>> labelsOfSequence(const fs::path& directory, const Config& config) {
+  const SequenceReader sequence(directory);
+  const auto detector = makeDetector(config);
+  std::vector<std::vector<std::uint8_t>> all;
+  EchoLabels labels;
+  for (std::size_t i = 0; i < sequence.size(); ++i) {
+    detector->process(toScan(sequence.scan(i)), labels);
+    all.push_back(labels.dynamic);
+  }
+  return all;
+}
+
+Config paperConfig() {
+  Config config;
+  config.evidence.free_evidence = config.evidence.careful_sight = config.evidence.neighbourhood = false;
+  config.evidence.birth_age = config.evidence.ground = config.objects.enabled = false;
+  return config;
+}
+
+TEST(LabelBag, GivesTheLabelsOfTheSequence) {
+  for (const double rate : {10.0, 100.0}) {
+    const TemporaryDirectory directory;
+    const fs::path in = directory.path() / "in.bag", out = directory.path() / "out.bag";
+    test::writeDriveBag(directory.path() / "drive", in, 15, {{rate, 0.0}, rosbag::compression::Uncompressed});
+    LabelBagOptions options;
+    options.config = paperConfig();
+    const auto summary = test::label(in, out, options);
+    const auto expected = labelsOfSequence(directory.path() / "drive", options.config);
+    const auto clouds = test::readTopic<PointCloud2>(out, kLabeled);
+    EXPECT_EQ(summary.counts.clouds_labeled, 15U);
+    EXPECT_EQ(summary.counts.dropped.total(), 0U);
+    ASSERT_EQ(clouds.size(), expected.size());
+    std::size_t dynamic = 0;
+    for (std::size_t i = 0; i < clouds.size(); ++i) {
+      EXPECT_EQ(dynamicOf(*clouds[i]), expected[i]) << "scan " << i << " at " << rate << " Hz";
+      dynamic += static_cast<std::size_t>(std::count(expected[i].begin(), expected[i].end(), 1));
+    }
+    EXPECT_GT(dynamic, 100U);  // else equal labels would say little
+  }
+}
+
+/// A second listener on /odom, a latched topic, messages of equal times, and texts between.
+void addOthers(rosbag::Bag& bag) {
+  const auto header = boost::make_shared<ros::M_string>();
+  namespace traits = ros::message_traits;
+  (*header)["type"] = traits::DataType<std_msgs::String>::value();
+  (*header)["md5sum"] = traits::MD5Sum<std_msgs::String>::value();
+  (*header)["message_definition"] = traits::Definition<std_msgs::String>::value();
+  (*header)["topic"] = "/robot_name";
+  (*header)["callerid"] = "/parameters";
+  (*header)["latching"] = "1";
+  bag.write("/robot_name", ros::Time(50.05), test::text("rover"), header);
+  for (int i = 0; i < 20; ++i) {
+    const ros::Time time(50.0 + 0.07 * i);
+    bag.write("/log", time, test::text("entry " + std::to_string(i)));
+    bag.write("/a/second/log", time, test::text("also " + std::to_string(i)));
+  }
+}
+
+TEST(LabelBag, KeepsEverythingElse) {
+  for (const auto compression : {rosbag::compression::Uncompressed, rosbag::compression::LZ4, rosbag::compression::BZ2}) {
+    const TemporaryDirectory directory;
+    const fs::path in = directory.path() / "in.bag", out = directory.path() / "out.bag";
+    test::writeDriveBag(directory.path() / "drive", in, 8, {{}, compression});
+    test::change(in, addOthers);
+    const auto summary = test::label(in, out);
+    const auto before = test::readAll(in), after = test::readAll(out, kLabeled);
+    EXPECT_EQ(summary.messages, before.size());
+    ASSERT_EQ(before.size(), after.size());
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      EXPECT_TRUE(before[i] == after[i]) << i << ": " << before[i].topic << " became " << after[i].topic;
+    }
+    EXPECT_EQ(compressionOf(out), compression);
+    EXPECT_EQ(test::readTopic<PointCloud2>(out, kLabeled).size(), 8U);
+    EXPECT_FALSE(fs::exists(out.string() + ".part"));
+  }
+}
+
+TEST(LabelBag, LabeledCloudIsTheInputWithTwoMoreFields) {
+  const TemporaryDirectory directory;
+  const fs::path in = directory.path() / "in.bag", out = directory.path() / "out.bag";
+  test::writeDriveBag(directory.path() / "drive", in, 3);
+  test::label(in, out);
+  const auto clouds = test::readTopic<PointCloud2>(in, "/points");
+  const auto labeled = test::readTopic<PointCloud2>(out, kLabeled);
+  ASSERT_EQ(labeled.size(), clouds.size());
+  for (std::size_t i = 0; i < clouds.size(); ++i) {
+    EXPECT_EQ(labeled[i]->header.stamp, clouds[i]->header.stamp);
+    EXPECT_EQ(labeled[i]->header.frame_id, clouds[i]->header.frame_id);
+    EXPECT_EQ(labeled[i]->width, clouds[i]->width);
+    EXPECT_EQ(labeled[i]->fields.size(), clouds[i]->fields.size() + 2);
+  }
+}
+
+TEST(LabelBag, TakesTheNamedTopicsOfSeveral) {
+  const TemporaryDirectory directory;
+  const fs::path in = directory.path() / "in.bag", out = directory.path() / "out.bag";
+  test::writeDriveBag(directory.path() / "drive", in, 3);
+  test::change(in, [](rosbag::Bag& bag) {
+    bag.write("/rear/points", ros::Time(50.0), PointCloud2());
+    bag.write("/other/odom", ros::Time(50.0), nav_msgs::Odometry());
+  });
+  EXPECT_THROW(test::label(in, out), DataError);
+  LabelBagOptions options;
+  options.points = "points";  // without the slash too
+  options.odom = "/odom";
+  options.labeled = "labels";
+  const auto summary = test::label(in, out, options);
+  EXPECT_EQ(summary.points, "/points");
+  EXPECT_EQ(summary.counts.clouds_labeled, 3U);
+  EXPECT_EQ(test::readTopic<PointCloud2>(out, "/labels").size(), 3U);
+}
+
+TEST(LabelBag, MovesBySequenceOfTfAndNeedsNoOdometryThen) {
+  const TemporaryDirectory directory;
+  const fs::path in = directory.path() / "in.bag", out = directory.path() / "out.bag";
+  test::writeDriveBag(directory.path() / "drive", in, 6);
+  LabelBagOptions options;
+  options.config = paperConfig();
+  options.config.motion.source = OdometrySource::kTf;
+  const auto summary = test::label(in, out, options);
+  EXPECT_TRUE(summary.odom.empty());
+  EXPECT_EQ(summary.counts.clouds_labeled, 6U);
+  const auto expected = labelsOfSequence(directory.path() / "drive", options.config);
+  const auto clouds = test::readTopic<PointCloud2>(out, kLabeled);
+  ASSERT_EQ(clouds.size(), 6U);
+  for (std::size_t i = 0; i < clouds.size(); ++i) EXPECT_EQ(dynamicOf(*clouds[i]), expected[i]);
+}
+
+TEST(LabelBag, WhatIsDroppedIsCountedAndExplained) {
+  const TemporaryDirectory directory;
+  const fs::path in = directory.path() / "in.bag", out = directory.path() / "out.bag";
+  test::writeDriveBag(directory.path() / "drive", in, 4);
+  test::change(in, [](rosbag::Bag& bag) {
+    PointCloud2 cloud;  // no fields at all
+    cloud.header.stamp = ros::Time(50.25);
+    cloud.width = cloud.height = 1;
+    bag.write("/points", ros::Time(50.25), cloud);
+    nav_msgs::Odometry odometry;
+    odometry.header.stamp = ros::Time(50.25);
+    odometry.header.frame_id = "odom";
+    odometry.child_frame_id = "base_link";
+    bag.write("/odom", ros::Time(50.25), odometry);  // its quaternion is zero
+  });
+  const auto summary = test::label(in, out);
+  EXPECT_EQ(summary.counts.clouds_in, 5U);
+  EXPECT_EQ(summary.counts.clouds_labeled, 4U);
+  EXPECT_EQ(summary.counts.dropped.total(), 1U);
+  EXPECT_EQ(summary.counts.refused.total(), 1U);
+  EXPECT_EQ(summary.remarks.size(), 2U);
+}
+
+}  // namespace
+}  // namespace donex

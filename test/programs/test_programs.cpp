@@ -1,0 +1,169 @@
+#include <sys/wait.h>
+
+#include <cstdio>
+
+#include <gtest/gtest.h>
+
+#include "support/sequences.h"
+#include "support/temporary_directory.h"
+
+namespace donex {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int code = -1;
+  std::string text;  ///< stdout and stderr
+};
+
+Outcome runCommand(const std::string& command) {
+  Outcome outcome;
+  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+  if (pipe == nullptr) return outcome;
+  char buffer[4096];
+  for (std::size_t n; (n = fread(buffer, 1, sizeof(buffer), pipe)) > 0;) outcome.text.append(buffer, n);
+  const int status = pclose(pipe);
+  if (WIFEXITED(status)) outcome.code = WEXITSTATUS(status);
+  return outcome;
+}
+
+/// Runs in a directory with a sound labelled sequence "seq" of eight scans.
+class Programs : public testing::Test {
+ protected:
+  void SetUp() override { test::writeSoundSequence(path("seq"), 8); }
+
+  std::string path(const std::string& name) const { return (directory_.path() / name).string(); }
+
+  Outcome run(const char* program, const std::string& arguments) {
+    return runCommand("cd " + directory_.path().string() + " && " + program + " " + arguments);
+  }
+  Outcome expect(int code, const std::string& part, const char* program, const std::string& arguments) {
+    Outcome outcome = run(program, arguments);
+    EXPECT_EQ(outcome.code, code) << outcome.text;
+    EXPECT_NE(outcome.text.find(part), std::string::npos) << "'" << part << "' is not in\n" << outcome.text;
+    return outcome;
+  }
+
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(Programs, SequenceWritesLabelsAndFigures) {
+  const Outcome outcome = expect(0, "8 scans, 80 echoes", DONEX_SEQUENCE, "seq --out pred");
+  for (const char* part : {"time a scan: median", "p99", "echoes a second", "peak memory", "IoU", "donex_3d, 0.2 m"}) {
+    EXPECT_NE(outcome.text.find(part), std::string::npos) << part << " is not in\n" << outcome.text;
+  }
+  EXPECT_EQ(outcome.text.find('\r'), std::string::npos) << "a progress bar although this is no terminal";
+  for (std::size_t i = 0; i < 8; ++i) {
+    const auto labels = readLabels(directory_.path() / "pred" / (scanName(i) + ".label"));
+    ASSERT_EQ(labels.size(), 10U);
+    for (const std::uint32_t label : labels) EXPECT_TRUE(label == kLabelMoving || label == kLabelStatic);
+  }
+}
+
+TEST_F(Programs, SequenceTakesOptions) {
+  expect(0, "3 scans, 30 echoes", DONEX_SEQUENCE, "--frames 3 --out pred seq");
+  EXPECT_FALSE(fs::exists(path("pred/000003.label")));
+  expect(0, "donex_2d, 0.4 m", DONEX_SEQUENCE, "--method donex_2d --voxel-size 0.4 seq");
+  test::writeText(path("config.yaml"), "voxel_size: 0.5\nmethod: donex_2d\n");
+  expect(0, "donex_2d, 0.5 m", DONEX_SEQUENCE, "--config config.yaml seq");
+  expect(0, "donex_2d, 0.3 m", DONEX_SEQUENCE, "--config config.yaml --set voxel_size=0.3 --set queue_size=3 seq");
+}
+
+TEST_F(Programs, SequenceWithoutLabelsIsNotScored) {
+  fs::remove_all(path("seq/labels"));
+  fs::remove(path("seq/times.txt"));
+  const Outcome outcome = expect(0, "not scored: the sequence has no labels", DONEX_SEQUENCE, "seq");
+  EXPECT_NE(outcome.text.find("donex_sequence: seq/times.txt: is missing"), std::string::npos) << outcome.text;
+}
+
+TEST_F(Programs, SequenceRefusesWrongArguments) {
+  expect(2, "SEQ_DIR is required", DONEX_SEQUENCE, "");
+  expect(2, "", DONEX_SEQUENCE, "seq --nonsense");
+  expect(2, "", DONEX_SEQUENCE, "seq --frames 0");
+  expect(2, "'method=donex': method is donex, must be one of", DONEX_SEQUENCE, "seq --method donex");
+  expect(2, "'voxel_size=9': voxel_size is 9", DONEX_SEQUENCE, "seq --voxel-size 9");
+  expect(2, "there is no parameter nonsense", DONEX_SEQUENCE, "seq --set nonsense=1");
+  expect(2, "holds the ground truth", DONEX_SEQUENCE, "seq --out seq/labels");
+  EXPECT_EQ(readLabels(path("seq/labels/000000.label")), std::vector<std::uint32_t>(10, kLabelStatic));
+}
+
+TEST_F(Programs, SequenceNamesBadData) {
+  expect(1, "donex_sequence: none: is not a directory", DONEX_SEQUENCE, "none");
+  expect(1, "none.yaml: cannot be read", DONEX_SEQUENCE, "seq --config none.yaml");
+  test::writeText(path("bad.yaml"), "voxel_size: 9\nnonsense: 1\n");
+  expect(1, "bad.yaml:2: there is no parameter nonsense", DONEX_SEQUENCE, "seq --config bad.yaml");
+  test::writeText(path("a_file"), "");
+  expect(1, "a_file/pred: cannot be created", DONEX_SEQUENCE, "seq --out a_file/pred");
+  fs::resize_file(path("seq/velodyne/000002.bin"), 17);
+  expect(1, "seq/velodyne/000002.bin: 17 bytes, no multiple of 16", DONEX_SEQUENCE, "seq");
+}
+
+TEST_F(Programs, HelpIsNoError) {
+  expect(0, "SEQ_DIR", DONEX_SEQUENCE, "--help");
+  expect(0, "PRED_DIR", DONEX_EVALUATE, "--help");
+}
+
+TEST_F(Programs, EvaluateScoresSideBySide) {
+  fs::copy(path("seq/labels"), path("truth"));
+  run(DONEX_SEQUENCE, "seq --out pred");
+  const Outcome outcome = expect(0, "truth", DONEX_EVALUATE, "seq truth pred");
+  EXPECT_NE(outcome.text.find("pred"), std::string::npos);
+  EXPECT_NE(outcome.text.find("static"), std::string::npos);
+}
+
+TEST_F(Programs, EvaluateNeverGuesses) {
+  fs::copy(path("seq/labels"), path("pred"));
+  fs::resize_file(path("pred/000005.label"), 36);
+  fs::remove(path("pred/000006.label"));
+  const Outcome outcome = expect(1, "pred/000005.label: 9 labels for 10 echoes, not scored", DONEX_EVALUATE, "seq pred");
+  EXPECT_NE(outcome.text.find("pred/000006.label: No such file or directory, not scored"), std::string::npos)
+      << outcome.text;
+  EXPECT_NE(outcome.text.find("prediction"), std::string::npos) << "the scan that is whole is scored all the same";
+  expect(0, "prediction", DONEX_EVALUATE, "seq pred --frames 5");  // the faulty ones are not asked for
+}
+
+TEST_F(Programs, EvaluateRefusesWhatItCannotScore) {
+  expect(2, "PRED_DIR is required", DONEX_EVALUATE, "seq");
+  expect(1, "none: is not a directory", DONEX_EVALUATE, "seq none");
+  fs::remove_all(path("seq/labels"));
+  expect(1, "seq/labels: holds no labels to score by", DONEX_EVALUATE, "seq seq");
+}
+
+#ifdef DONEX_BAG
+
+TEST_F(Programs, BagIsLabelled) {
+  expect(0, "8 clouds on /points, 8 odometry messages", DONEX_SEQUENCE_TO_BAG, "seq in.bag");
+  expect(0, "8 of 8 clouds labelled, 0 dropped", DONEX_BAG, "in.bag out.bag");
+  EXPECT_TRUE(fs::exists(path("out.bag")));
+  expect(1, "choose another name with --labeled", DONEX_BAG, "out.bag again.bag");
+  expect(0, "8 of 8", DONEX_BAG, "out.bag again.bag --points /points --labeled /labeled --set method=donex_2d");
+}
+
+TEST_F(Programs, BagRefusesWrongArguments) {
+  run(DONEX_SEQUENCE_TO_BAG, "seq in.bag");
+  const auto size = fs::file_size(path("in.bag"));
+  expect(2, "is required", DONEX_BAG, "in.bag");
+  expect(2, "OUT.bag is IN.bag", DONEX_BAG, "in.bag ./in.bag");
+  expect(2, "there is no parameter x", DONEX_BAG, "in.bag out.bag --set x=1");
+  expect(2, "", DONEX_SEQUENCE_TO_BAG, "seq other.bag --odom-rate 0");
+  expect(2, "", DONEX_SEQUENCE_TO_BAG, "seq other.bag --compression zip");
+  EXPECT_EQ(fs::file_size(path("in.bag")), size);
+}
+
+TEST_F(Programs, BagNamesBadData) {
+  expect(1, "none.bag: does not exist", DONEX_BAG, "none.bag out.bag");
+  test::writeText(path("text.bag"), "no bag");
+  expect(1, "text.bag: is not a bag or is cut off", DONEX_BAG, "text.bag out.bag");
+  run(DONEX_SEQUENCE_TO_BAG, "seq in.bag");
+  expect(1, "in.bag: has no topic /none (--points); its topics are:", DONEX_BAG, "in.bag out.bag --points /none");
+  fs::resize_file(path("in.bag"), fs::file_size(path("in.bag")) - 100);
+  expect(1, "in.bag: ", DONEX_BAG, "in.bag out.bag");
+  EXPECT_FALSE(fs::exists(path("out.bag")));
+  expect(1, "none: is not a directory", DONEX_SEQUENCE_TO_BAG, "none out.bag");
+}
+
+#endif
+
+}  // namespace
+}  // namespace donex
