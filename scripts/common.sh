@@ -61,7 +61,7 @@ source_setup() {
 build_workspace() {
   make_workspace
   say "Building in $workspace"
-  catkin_make -C "$workspace" --cmake-args "${cmake_arguments[@]}"
+  catkin_make -C "$workspace" -j"$(nproc)" --cmake-args "${cmake_arguments[@]}"
   source_setup "$workspace/devel/setup.bash"
 }
 
