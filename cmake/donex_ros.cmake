@@ -2,6 +2,7 @@
 
 # donex_catkin: link this to use those packages. Their headers are SYSTEM: our warnings are for our code.
 add_library(donex_catkin INTERFACE)
+#catkin_lint: ignore_once external_interface_path
 target_include_directories(donex_catkin SYSTEM INTERFACE ${catkin_INCLUDE_DIRS})
 target_link_libraries(donex_catkin INTERFACE ${catkin_LIBRARIES})
 if(TARGET pluginlib::pluginlib)
