@@ -82,13 +82,23 @@ Eigen::Vector3f GroundWindow::normal(double x, double y) const {
 
 /// `origin` and `direction` level in cells, upright in metres. The parameter, or kMiss.
 float GroundWindow::enter(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float from) const {
+  const auto aboveGround = [&](float r) {
+    const Eigen::Vector3f at = origin + r * direction;
+    return at.z() - heightAtCell(at.x(), at.y());
+  };
+  /// Between a place above and a place below: two steps of false position.
+  const auto crossing = [&](float r_above, float above, float r_below, float below) {
+    const float guess = r_above + (r_below - r_above) * above / (above - below);
+    const float there = aboveGround(guess);
+    if (there > 0.0f) return guess + (r_below - guess) * there / (there - below);
+    return r_above + (guess - r_above) * above / (above - there);
+  };
   const float fastest_approach = std::max(0.2f, kSteepest - direction.z());
   float before = 0.0f;
   float before_r = from;
   for (float r = from; r < static_cast<float>(kReach);) {
-    const Eigen::Vector3f at = origin + r * direction;
-    const float above = at.z() - heightAtCell(at.x(), at.y());
-    if (above <= 0.0f) return before > 0.0f ? before_r + (r - before_r) * before / (before - above) : r;
+    const float above = aboveGround(r);
+    if (above <= 0.0f) return before > 0.0f ? crossing(before_r, before, r, above) : r;
     before_r = r;
     before = above;
     r += std::max(std::max(kStep, kStepGrowth * r), above / fastest_approach);

@@ -35,7 +35,8 @@ Part limb(const Vector3f& from, const Vector3f& to, float radius, float reflecti
   Shape shape;
   shape.kind = ShapeKind::kCylinder;
   shape.center = 0.5f * (from + to);
-  shape.axes = Eigen::Quaternionf::FromTwoVectors(Vector3f::UnitZ(), along).toRotationMatrix();
+  const auto turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), along.cast<double>());
+  shape.axes = turn.normalized().toRotationMatrix().cast<float>();
   shape.half = {radius, radius, 0.5f * along.norm()};
   return {shape, reflectivity};
 }

@@ -31,7 +31,8 @@ Path& Path::wrap() {
 void Path::append(double length, double curvature) {
   PathPoint start = end_;
   start.curvature = curvature;
-  pieces_.push_back({length_, length, start, start.forward(), start.left()});
+  pieces_.push_back({length_, length, start, start.forward(), start.left(), start.position});
+  pieces_.back().middle = along(pieces_.back(), 0.5 * length).position;
   end_ = along(pieces_.back(), length);
   length_ += length;
 }
@@ -85,6 +86,8 @@ Path::Projection Path::project(const Eigen::Vector2d& point) const {
   Projection best;
   best.distance = std::numeric_limits<double>::infinity();
   for (const Piece& piece : pieces_) {
+    const double at_least = (point - piece.middle).norm() - 0.5 * piece.length;
+    if (at_least >= best.distance) continue;
     const Projection candidate = projectOnto(piece, point);
     if (candidate.distance < best.distance) best = candidate;
   }

@@ -159,7 +159,7 @@ void populate(SceneBuilder& builder, const SharedPath& path, const Traffic& traf
   for (int i = 0; i < traffic.oncoming; ++i) builder.addClear(makeAnyVehicle(random), course, horizon);
   for (int i = 0; i < traffic.cyclists; ++i) {
     course.backwards = random.chance(0.5);
-    course.lateral = (course.backwards ? 1.0 : -1.0) * (traffic.lane + 1.4);
+    course.lateral = (course.backwards ? 1.0 : -1.0) * (traffic.lane + 1.5);
     course.speed = swinging(random.uniform(3.5, 6.0), 0.4, 7.0, random.uniform(0.0, 6.28));
     builder.addClear(makeCyclist(random), course, horizon);
   }

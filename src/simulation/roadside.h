@@ -22,7 +22,7 @@ struct Roadside {
 void furnish(SceneBuilder& builder, const Path& path, double from, double to, const Roadside& roadside);
 
 struct Traffic {
-  double lane = 1.55;      ///< middle of the lane beside the road's [m]
+  double lane = 1.45;      ///< middle of the lane beside the road's [m]
   int oncoming = 0;        ///< vehicles, over the whole path
   double oncoming_speed = 9.0;  ///< [m/s]
   int walkers = 0;         ///< on the pavements
@@ -42,6 +42,6 @@ void addCrossings(SceneBuilder& builder, const Path& path, int count, double slo
 Model makeAnyVehicle(Random& random);
 
 /// On the path, in the lane to the right of its middle.
-Course onRightLane(const SharedPath& path, double start, const SpeedProfile& speed, double lane = 1.55);
+Course onRightLane(const SharedPath& path, double start, const SpeedProfile& speed, double lane = 1.45);
 
 }  // namespace donex::simulation

@@ -28,11 +28,23 @@ bool collide(const PathPoint& a, const Eigen::Vector2d& half_a, const PathPoint&
   return std::abs(apart.dot(a.forward())) < along && std::abs(apart.dot(a.left())) < across;
 }
 
-bool stayClear(const Course& a, const Eigen::Vector2d& half_a, const Course& b, const Eigen::Vector2d& half_b,
-               double horizon) {
-  constexpr double kStep = 0.2;  // [s]
-  for (double time = -1.0; time < horizon; time += kStep) {
-    if (collide(a.at(time), half_a, b.at(time), half_b, 1.0)) return false;
+constexpr double kTrackBegin = -1.0;  // [s]
+constexpr double kTrackEnd = 80.0;    // [s]
+constexpr double kTrackStep = 0.2;    // [s]
+
+SceneBuilder::Track trackOf(const Course& course, const Eigen::Vector2d& half) {
+  SceneBuilder::Track track{{}, half};
+  for (double time = kTrackBegin; time < kTrackEnd; time += kTrackStep) track.places.push_back(course.at(time));
+  return track;
+}
+
+bool stayClear(const SceneBuilder::Track& a, const SceneBuilder::Track& b, double horizon) {
+  constexpr double kGap = 1.0;    // [m]
+  constexpr double kFar = 22.0;   // no two things that far apart touch [m]
+  const auto steps = static_cast<std::size_t>((std::min(horizon, kTrackEnd) - kTrackBegin) / kTrackStep);
+  for (std::size_t i = 0; i < steps; ++i) {
+    const bool far = (a.places[i].position - b.places[i].position).squaredNorm() > kFar * kFar;
+    if (!far && collide(a.places[i], a.half, b.places[i], b.half, kGap)) return false;
   }
   return true;
 }
@@ -196,6 +208,7 @@ void SceneBuilder::bridge(const Path& path, double s, double half_span, double c
 
 void SceneBuilder::ego(const Course& course) {
   scene_.ego.course = course;
+  ego_track_ = trackOf(course, {3.0, 1.0});
   Eigen::Isometry3d& mounting = scene_.ego.base_from_sensor;
   mounting = Eigen::Translation3d(1.1, 0.0, 1.73);
   mounting.rotate(Eigen::AngleAxisd(0.004, Eigen::Vector3d::UnitX()));
@@ -204,23 +217,19 @@ void SceneBuilder::ego(const Course& course) {
 
 void SceneBuilder::add(const Model& model, const Course& course) {
   scene_.movers.push_back({model, course});
-  footprints_.push_back(footprint(model));
+  tracks_.push_back(trackOf(course, footprint(model)));
 }
 
 bool SceneBuilder::addClear(const Model& model, Course course, double horizon) {
+  constexpr int kAttempts = 25;
   const Eigen::Vector2d half = footprint(model);
-  const Eigen::Vector2d ego_half(3.0, 1.0);
-  const auto meetsNobody = [&] {
-    if (!stayClear(course, half, scene_.ego.course, ego_half, horizon)) return false;
-    for (std::size_t i = 0; i < scene_.movers.size(); ++i) {
-      if (!stayClear(course, half, scene_.movers[i].course, footprints_[i], horizon)) return false;
-    }
-    return true;
-  };
-  for (int attempt = 0; attempt < 12; ++attempt) {
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
     course.start = random_.uniform(0.0, course.path->length());
-    if (!meetsNobody()) continue;
-    add(model, course);
+    const Track track = trackOf(course, half);
+    const auto meets = [&](const Track& other) { return !stayClear(track, other, horizon); };
+    if (meets(ego_track_) || std::any_of(tracks_.begin(), tracks_.end(), meets)) continue;
+    scene_.movers.push_back({model, course});
+    tracks_.push_back(track);
     return true;
   }
   return false;

@@ -47,6 +47,12 @@ class SceneBuilder {
   /// within `horizon` [s]; false, and nothing added, when there is none.
   bool addClear(const Model& model, Course course, double horizon = 40.0);
 
+  /// Where somebody is, every kTrackStep from kTrackBegin on.
+  struct Track {
+    std::vector<PathPoint> places;
+    Eigen::Vector2d half;  ///< of the footprint, along and across [m]
+  };
+
  private:
   void place(const Eigen::Vector2d& at, double above_ground, const Shape& shape, std::uint32_t label, float reflectivity,
              float sway = 0.0f);
@@ -55,7 +61,8 @@ class SceneBuilder {
 
   Scene scene_{Ground(), {}, {}, {}, 64};
   Random random_;
-  std::vector<Eigen::Vector2d> footprints_;  // of the movers, half edges
+  std::vector<Track> tracks_;  // of the movers
+  Track ego_track_;
 };
 
 /// A circuit of two straights and two half circles, to the left.

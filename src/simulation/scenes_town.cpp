@@ -34,8 +34,8 @@ void addCrossroadsTraffic(SceneBuilder& builder) {
     for (int i = 0; i < vehicles; ++i) {
       builder.addClear(makeAnyVehicle(random), onRightLane(straight, 0.0, SpeedProfile(speed)), kRound);
     }
-    Course cyclist = onRightLane(straight, 0.0, SpeedProfile(0.5 * speed), 3.0);
-    if (!ego_arm) builder.addClear(makeCyclist(random), cyclist, 2.0 * kRound);
+    Course cyclist = onRightLane(straight, 0.0, SpeedProfile(0.5 * speed), 2.95);
+    for (int i = 0; i < 2 && !ego_arm; ++i) builder.addClear(makeCyclist(random), cyclist, 2.0 * kRound);
   }
 }
 
@@ -95,8 +95,8 @@ Scene makeStreet(std::uint64_t seed) {
   }
   Traffic traffic;
   traffic.oncoming = 14;
-  traffic.walkers = 45;
-  traffic.cyclists = 8;
+  traffic.walkers = 70;
+  traffic.cyclists = 14;
   populate(builder, path, traffic);
   addCrossings(builder, *path, 10);
   return std::move(builder.scene());

@@ -5,7 +5,7 @@
 namespace donex::simulation {
 namespace {
 
-constexpr double kLane = 1.55;     // [m]
+constexpr double kLane = 1.45;     // [m]
 constexpr double kParking = 4.15;  // middle of the road to a parked car's middle [m]
 
 /// A circuit between houses.

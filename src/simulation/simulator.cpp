@@ -129,21 +129,19 @@ Eigen::Isometry3d Simulator::odomFromBase(double stamp) const {
 
 Eigen::Isometry3d Simulator::baseFromSensor() const { return state_->scene.ego.base_from_sensor; }
 
-std::vector<MoverTruth> Simulator::movers(double stamp) const {
+std::size_t Simulator::moverCount() const { return state_->scene.movers.size(); }
+
+MoverTruth Simulator::mover(std::size_t number, double stamp) const {
   const double time = stamp - state_->options.start_stamp;
-  std::vector<MoverTruth> truths;
-  for (std::size_t i = 0; i < state_->scene.movers.size(); ++i) {
-    const Mover& mover = state_->scene.movers[i];
-    const Eigen::AlignedBox3d box = mover.model.box();
-    MoverTruth truth;
-    truth.label = labelOf(mover, time) | instanceBits(i);
-    truth.odom_from_box = state_->odom_from_scene * poseOf(mover, state_->scene.ground, time);
-    truth.velocity = truth.odom_from_box.linear().col(0) * mover.course.groundSpeed(time);
-    truth.odom_from_box.translate(box.center());
-    truth.size = box.sizes();
-    truths.push_back(truth);
-  }
-  return truths;
+  const Mover& mover = state_->scene.movers.at(number);
+  const Eigen::AlignedBox3d box = mover.model.box();
+  MoverTruth truth;
+  truth.label = labelOf(mover, time) | instanceBits(number);
+  truth.odom_from_box = state_->odom_from_scene * poseOf(mover, state_->scene.ground, time);
+  truth.velocity = truth.odom_from_box.linear().col(0) * mover.course.groundSpeed(time);
+  truth.odom_from_box.translate(box.center());
+  truth.size = box.sizes();
+  return truth;
 }
 
 int Simulator::beams() const { return state_->sensor.beams(); }

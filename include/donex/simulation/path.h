@@ -47,6 +47,7 @@ class Path {
     PathPoint start;
     Eigen::Vector2d forward;  ///< at the start
     Eigen::Vector2d left;
+    Eigen::Vector2d middle;  ///< no place on it is further from here than half its length
   };
   static PathPoint along(const Piece& piece, double s);
   static Projection projectOnto(const Piece& piece, const Eigen::Vector2d& point);

@@ -71,7 +71,9 @@ class Simulator {
   /// True motion at any moment of the scene [s].
   Eigen::Isometry3d odomFromBase(double stamp) const;
   Eigen::Isometry3d baseFromSensor() const;
-  std::vector<MoverTruth> movers(double stamp) const;
+  /// The moving things; `number` counts from 0, one less than in the labels.
+  std::size_t moverCount() const;
+  MoverTruth mover(std::size_t number, double stamp) const;
 
   int beams() const;
   int columns() const;  ///< firings a turn: beams() x columns() rays
