@@ -1,19 +1,16 @@
 #include "donex/core/birth_memory.h"
 
+#include <algorithm>
+#include <stdexcept>
+
 namespace donex {
 
 BirthMemory::BirthMemory(const Config& config)
-    : window_(config), layout_(window_.extent()), brick_of_slot_(layout_.slots(), kNoBrick) {}
-
-void BirthMemory::shift(const Eigen::Isometry3d& odom_from_base) {
-  if (window_.compensation() == Compensation::kScroll) {
-    scroll(odom_from_base);
-  } else {
-    resample(odom_from_base);
-  }
+    : window_(config), layout_(window_.extent()), brick_of_slot_(layout_.slots(), kNoBrick) {
+  if (config.compensation != Compensation::kScroll) throw std::invalid_argument("births cannot be resampled");
 }
 
-void BirthMemory::scroll(const Eigen::Isometry3d& odom_from_base) {
+void BirthMemory::shift(const Eigen::Isometry3d& odom_from_base) {
   const Index3 before = window_.minIndex();
   window_.moveTo(odom_from_base);
   const Index3 moved = window_.minIndex() - before;
@@ -34,8 +31,6 @@ void BirthMemory::forget(std::uint32_t brick) {
   }
   bricks_.pop_back();
 }
-
-void BirthMemory::resample(const Eigen::Isometry3d& odom_from_base) { window_.moveTo(odom_from_base); }
 
 const VoxelRecord* BirthMemory::find(const Index3& in_window) const {
   const BrickBit at = layout_.locate(in_window);

@@ -21,8 +21,8 @@ int& Clusters::makeCell(int x, int y, int z) {
 }
 
 void Clusters::connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
-                       const std::vector<float>& heights, const std::vector<std::uint8_t>& member) {
-  fill(sensor, echoes, heights, member);
+                       const std::vector<float>& heights, const std::vector<Standing>& standing) {
+  fill(sensor, echoes, heights, standing);
   hangSkirt();
   for (int cell = 0; cell < static_cast<int>(cells_.size()); ++cell) join(cell);
   number();
@@ -30,7 +30,7 @@ void Clusters::connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::V
 }
 
 void Clusters::fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
-                    const std::vector<float>& heights, const std::vector<std::uint8_t>& member) {
+                    const std::vector<float>& heights, const std::vector<Standing>& standing) {
   const auto per_cell = static_cast<float>(1.0 / settings_.cell);
   const auto highest = static_cast<float>(settings_.height);
   cells_.clear();
@@ -38,13 +38,13 @@ void Clusters::fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vect
   skirt_.clear();
   of_.assign(echoes.size(), kNone);
   for (std::size_t i = 0; i < echoes.size(); ++i) {
-    const bool in_height = member[i] != kOut && heights[i] >= 0.0F && heights[i] <= highest;
+    const bool in_height = standing[i] != Standing::kOut && heights[i] >= 0.0F && heights[i] <= highest;
     if (!in_height) continue;
     const int x = static_cast<int>(std::floor((echoes[i].x() - sensor.x()) * per_cell)) + width_ / 2;
     const int y = static_cast<int>(std::floor((echoes[i].y() - sensor.y()) * per_cell)) + width_ / 2;
     const int z = static_cast<int>(heights[i] * per_cell);
     if (x < 0 || x >= width_ || y < 0 || y >= width_) continue;
-    if (member[i] == kSkirt) {
+    if (standing[i] == Standing::kSkirt) {
       skirt_.push_back({static_cast<int>(i), x, y});
       continue;
     }

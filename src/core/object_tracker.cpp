@@ -11,11 +11,10 @@ namespace {
 constexpr double kLargestStep = 4.0;       // [m] between two scans, before a velocity is known
 constexpr double kFollowedStep = 1.5;      // [m] off the predicted place
 constexpr double kLost = 0.6;              // [s] unseen for longer: forgotten
-constexpr double kLookBack = 0.3;          // [s] an object's former place is asked for after this long
+// An object's former place is asked for after these times [s]: soon for the fast, later again for the slow.
+constexpr std::array<double, 2> kLookBack = {0.3, 1.0};
 constexpr std::size_t kTracePoints = 48;
-constexpr double kLongest = 25.0;          // [m] longer things are no objects: walls, hedges
 constexpr double kSmoothing = 0.3;         // share of the newest displacement in the velocity
-constexpr double kLeastShare = 0.15;       // of all echoes that must be new
 constexpr int kScansToBelieve = 2;
 constexpr int kLeastLeft = 3;              // points of a trace
 
@@ -25,41 +24,39 @@ bool alike(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 }  // namespace
 
-bool ObjectTracker::isTooLong(const Candidate& candidate) { return candidate.extent().maxCoeff() > kLongest; }
-
-bool ObjectTracker::isNew(const Candidate& candidate) const {
-  const double fresh = candidate.new_echoes;
-  const bool enough = candidate.new_echoes >= config_.min_echoes && !isTooLong(candidate);
-  const bool outweighs = fresh > config_.new_share * (fresh + candidate.settled_echoes);
-  return enough && outweighs && fresh > kLeastShare * static_cast<double>(candidate.echoes.size());
-}
-
-void ObjectTracker::update(double stamp, const std::vector<Eigen::Vector3f>& points,
-                           const Eigen::Isometry3d& odom_from_points, const SightHistory& history,
-                           std::vector<Candidate>& candidates) {
+void ObjectTracker::update(const JudgedScan& scan, const SightHistory& history, std::vector<Candidate>& candidates) {
   objects_.clear();
-  match(stamp, candidates);
-  const Eigen::Isometry3d points_from_odom = odom_from_points.inverse();
+  match(scan.stamp, candidates);
+  const Eigen::Isometry3d points_from_odom = scan.odom_from_points.inverse();
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     Candidate& candidate = candidates[i];
     if (isTooLong(candidate)) continue;
-    if (track_of_[i] < 0) {
-      track_of_[i] = static_cast<int>(tracks_.size());
-      tracks_.emplace_back();
-      tracks_.back().id = next_id_++;
-      tracks_.back().first_seen = stamp;
-      tracks_.back().last_seen = stamp;
-      tracks_.back().center = candidate.center();
-      tracks_.back().extent = candidate.extent();
+    Track& track = trackOf(i, scan.stamp, candidate);
+    std::array<Former, 2> former;
+    for (std::size_t k = 0; k < former.size(); ++k) {
+      former[k] = lookBack(track, scan.stamp - kLookBack[k], points_from_odom, history);
     }
-    Track& track = tracks_[static_cast<std::size_t>(track_of_[i])];
-    follow(track, stamp, candidate);
-    decide(track, stamp, candidate, lookBack(track, stamp, points_from_odom, history));
-    leaveTrace(track, stamp, candidate, points, odom_from_points);
-    if (track.ever_dynamic) describe(track, stamp, candidate, points, odom_from_points);
+    decide(track, scan.stamp, candidate, former);
+    leaveTrace(track, scan, candidate);
+    if (track.ever_dynamic) describe(track, scan, candidate);
   }
-  const auto is_lost = [&](const Track& track) { return track.last_seen < stamp - kLost; };
+  const auto is_lost = [&](const Track& track) { return track.last_seen < scan.stamp - kLost; };
   tracks_.erase(std::remove_if(tracks_.begin(), tracks_.end(), is_lost), tracks_.end());
+}
+
+ObjectTracker::Track& ObjectTracker::trackOf(std::size_t candidate_index, double stamp, const Candidate& candidate) {
+  const int known = track_of_[candidate_index];
+  if (known >= 0) {
+    follow(tracks_[static_cast<std::size_t>(known)], stamp, candidate);
+    return tracks_[static_cast<std::size_t>(known)];
+  }
+  Track track;
+  track.id = next_id_++;
+  track.first_seen = track.last_seen = stamp;
+  track.center = candidate.center();
+  track.extent = candidate.extent();
+  tracks_.push_back(std::move(track));
+  return tracks_.back();
 }
 
 void ObjectTracker::match(double stamp, const std::vector<Candidate>& candidates) {
@@ -99,12 +96,12 @@ void ObjectTracker::follow(Track& track, double stamp, const Candidate& candidat
   track.last_seen = stamp;
 }
 
-ObjectTracker::Former ObjectTracker::lookBack(const Track& track, double stamp,
+ObjectTracker::Former ObjectTracker::lookBack(const Track& track, double to,
                                               const Eigen::Isometry3d& points_from_odom,
-                                              const SightHistory& history) const {
+                                              const SightHistory& history) {
   const Trace* former = nullptr;
   for (const Trace& trace : track.traces) {
-    if (trace.stamp <= stamp - kLookBack) former = &trace;
+    if (trace.stamp <= to) former = &trace;
   }
   Former result;
   if (former == nullptr) return result;
@@ -116,13 +113,16 @@ ObjectTracker::Former ObjectTracker::lookBack(const Track& track, double stamp,
   return result;
 }
 
-void ObjectTracker::decide(Track& track, double stamp, Candidate& candidate, const Former& former) {
+void ObjectTracker::decide(Track& track, double stamp, Candidate& candidate, const std::array<Former, 2>& former) {
   const bool mostly_settled = 2 * static_cast<std::size_t>(candidate.settled_echoes) > candidate.echoes.size();
-  const bool receded = !mostly_settled && former.left >= config_.min_echoes && former.left > former.still;
-  const bool advanced = !mostly_settled && former.left >= kLeastLeft && candidate.new_echoes >= config_.min_echoes;
+  bool receded = false, advanced = false;
+  for (const Former& then : former) {
+    receded |= !mostly_settled && then.left >= config_.min_echoes && then.left > then.still;
+    advanced |= !mostly_settled && then.left >= kLeastLeft && candidate.new_echoes >= config_.min_echoes;
+  }
   track.receding_scans = receded ? track.receding_scans + 1 : 0;
   track.advancing_scans = advanced ? track.advancing_scans + 1 : 0;
-  const bool moves = isNew(candidate) || track.receding_scans >= kScansToBelieve || track.advancing_scans >= kScansToBelieve;
+  const bool moves = isNew(candidate, config_) || track.receding_scans >= kScansToBelieve || track.advancing_scans >= kScansToBelieve;
   if (moves) track.last_motion = stamp;
   const bool just_stopped = track.dynamic && !mostly_settled && stamp - track.last_motion <= config_.stop_time;
   track.dynamic = moves || just_stopped;
@@ -130,32 +130,29 @@ void ObjectTracker::decide(Track& track, double stamp, Candidate& candidate, con
   candidate.dynamic = track.dynamic;
 }
 
-void ObjectTracker::leaveTrace(Track& track, double stamp, const Candidate& candidate,
-                               const std::vector<Eigen::Vector3f>& points,
-                               const Eigen::Isometry3d& odom_from_points) const {
+void ObjectTracker::leaveTrace(Track& track, const JudgedScan& scan, const Candidate& candidate) {
   Trace trace;
-  while (track.traces.size() > 1 && track.traces[1].stamp <= stamp - kLookBack) {
-    trace = std::move(track.traces.front());
+  while (track.traces.size() > 1 && track.traces[1].stamp <= scan.stamp - kLookBack[1]) {
+    trace = std::move(track.traces.front());  // its storage is used again
     track.traces.pop_front();
   }
-  trace.stamp = stamp;
+  trace.stamp = scan.stamp;
   trace.in_odom.clear();
   const std::size_t stride = candidate.echoes.size() / kTracePoints + 1;
   for (std::size_t i = 0; i < candidate.echoes.size(); i += stride) {
-    trace.in_odom.push_back(odom_from_points * points[candidate.echoes[i]].cast<double>());
+    trace.in_odom.push_back(scan.odom_from_points * scan.points[candidate.echoes[i]].cast<double>());
   }
   track.traces.push_back(std::move(trace));
 }
 
-void ObjectTracker::describe(const Track& track, double stamp, const Candidate& candidate,
-                             const std::vector<Eigen::Vector3f>& points, const Eigen::Isometry3d& odom_from_points) {
+void ObjectTracker::describe(const Track& track, const JudgedScan& scan, const Candidate& candidate) {
   Object object;
   object.id = track.id;
   object.velocity = track.velocity;
   object.dynamic = track.dynamic;
-  object.age = stamp - track.first_seen;
+  object.age = scan.stamp - track.first_seen;
   object.echoes = static_cast<std::uint32_t>(candidate.echoes.size());
-  fitBox(candidate.echoes, points, odom_from_points, track.velocity, object);
+  fitBox(candidate.echoes, scan.points, scan.odom_from_points, track.velocity, object);
   objects_.push_back(object);
 }
 

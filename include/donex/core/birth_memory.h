@@ -24,6 +24,7 @@ struct VoxelRecord {
 /// are held only where something was hit: memory is bounded by the region, not by the distance driven.
 class BirthMemory {
  public:
+  /// `config.compensation` must be `scroll` (std::invalid_argument).
   explicit BirthMemory(const Config& config);
 
   /// Moves the memory to the vehicle's new pose; what leaves the window is forgotten.
@@ -45,8 +46,6 @@ class BirthMemory {
   };
   static constexpr std::uint32_t kNoBrick = 0xFFFFFFFF;
 
-  void scroll(const Eigen::Isometry3d& odom_from_base);
-  void resample(const Eigen::Isometry3d& odom_from_base);
   void forget(std::uint32_t brick);
 
   GridWindow window_;

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <Eigen/Core>
+#include "donex/core/judged_scan.h"
 
 namespace donex {
 
@@ -16,20 +16,17 @@ class Clusters {
   struct Settings {
     double cell = 0.3;           ///< edge of a cell [m]
     double height = 4.5;         ///< echoes higher above ground belong to no cluster [m]
-    double across_angle = 0.01;  ///< echoes within this angle [rad] touch, horizontally
-    double up_angle = 0.015;     ///< the same vertically
+    double across_angle = 0.01;  ///< echoes within this angle touch, horizontally [rad]
+    double up_angle = 0.015;     ///< the same vertically [rad]
   };
 
   /// A square of `reach` [m] around the sensor.
   Clusters(double reach, const Settings& settings);
 
-  /// `echoes` [m] in a frame whose z points up, `heights` above ground [m], one an echo; `member` kOut, kIn or kSkirt.
+  /// `echoes` [m] in a frame whose z points up, `heights` above ground [m], one an echo.
   void connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
-               const std::vector<float>& heights, const std::vector<std::uint8_t>& member);
+               const std::vector<float>& heights, const std::vector<Standing>& standing);
 
-  static constexpr std::uint8_t kOut = 0;    ///< left out
-  static constexpr std::uint8_t kIn = 1;     ///< connects
-  static constexpr std::uint8_t kSkirt = 2;  ///< near the ground: belongs to what stands right above, connects nothing
   static constexpr int kNone = -1;
   /// Cluster of an echo, 0 to count() - 1, or kNone.
   int of(std::size_t echo) const { return of_[echo]; }
@@ -51,7 +48,7 @@ class Clusters {
   int& makeCell(int x, int y, int z);
   int rootOf(int cell);
   void fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
-            const std::vector<float>& heights, const std::vector<std::uint8_t>& member);
+            const std::vector<float>& heights, const std::vector<Standing>& standing);
   void hangSkirt();
   void join(int cell);
   void number();

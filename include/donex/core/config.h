@@ -56,7 +56,7 @@ struct ObjectConfig {
   double cell = 0.3;         // [m]
   double height = 4.5;       // [m]
   int min_echoes = 5;
-  double new_share = 0.3;
+  double new_share = 0.4;
   double stop_time = 0.5;    // [s]
 };
 
@@ -115,7 +115,7 @@ void visitParameters(Config& config, Visitor&& visit) {
   visit(ParameterInfo{"y_max", "m", "region of interest, vehicle frame, left", true}, r.y_max, -500.0, 500.0);
   visit(ParameterInfo{"z_min", "m", "region of interest, vehicle frame, bottom", true}, r.z_min, -100.0, 100.0);
   visit(ParameterInfo{"z_max", "m", "region of interest, vehicle frame, top", true}, r.z_max, -100.0, 100.0);
-  visit(ParameterInfo{"compensation", "", "voxel shift: scroll the grid in the odometry frame's axes, or resample its contents into the vehicle frame", true},
+  visit(ParameterInfo{"compensation", "", "voxel shift of the paper's rule: scroll the grid in the odometry frame's axes, or resample its contents into the vehicle frame; with evidence the grid always scrolls", true},
         config.compensation);
 
   EvidenceConfig& e = config.evidence;

@@ -6,16 +6,10 @@
 
 #include "donex/core/birth_memory.h"
 #include "donex/core/cell_layout.h"
+#include "donex/core/judged_scan.h"
 #include "donex/core/sight_history.h"
 
 namespace donex {
-
-/// What the grid knows of the place an echo hit.
-enum class Place : std::uint8_t {
-  kUnobserved,  ///< hit for the first time not long ago, and never seen free before
-  kNew,         ///< occupied not long ago after it had been seen free: something came
-  kSettled,     ///< occupied for longer than the birth window
-};
 
 /// The scans so far by number, and which births count as young.
 class ScanClock {

@@ -1,26 +1,16 @@
 // Connected echoes followed over time: is this thing moving? (algorithm section 5, step 6)
 #pragma once
 
+#include <array>
 #include <deque>
 #include <vector>
 
+#include "donex/core/candidate_finder.h"
 #include "donex/core/config.h"
 #include "donex/core/object.h"
 #include "donex/core/sight_history.h"
 
 namespace donex {
-
-/// A cluster of the present scan and what its echoes say.
-struct Candidate {
-  std::vector<std::uint32_t> echoes;  ///< indices into the scan
-  int new_echoes = 0;
-  int settled_echoes = 0;
-  Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();  ///< odometry frame [m]
-  bool dynamic = false;  ///< the verdict
-
-  Eigen::Vector3d center() const { return 0.5 * (low + high); }
-  Eigen::Vector3d extent() const { return high - low; }
-};
 
 /// Follows candidates from scan to scan. An object moves
 ///  - where enough of its echoes are new: its front comes into space that was free;
@@ -31,16 +21,9 @@ class ObjectTracker {
  public:
   explicit ObjectTracker(const ObjectConfig& config) : config_(config) {}
 
-  /// Longer than any vehicle: a wall, a hedge, or things that touch.
-  static bool isTooLong(const Candidate& candidate);
-
-  /// Enough of the candidate is new, taken alone.
-  bool isNew(const Candidate& candidate) const;
-
-  /// Decides `dynamic` of every candidate. `points`: the scan's echoes in the frame in which `history`
-  /// is asked [m]; its newest scan is the present one. `odom_from_points`: that frame in the odometry's.
-  void update(double stamp, const std::vector<Eigen::Vector3f>& points, const Eigen::Isometry3d& odom_from_points,
-              const SightHistory& history, std::vector<Candidate>& candidates);
+  /// Decides `dynamic` of every candidate of a scan. `history` is asked in the scan's points; its newest
+  /// scan is this one.
+  void update(const JudgedScan& scan, const SightHistory& history, std::vector<Candidate>& candidates);
 
   /// Objects of the last scan that move, or moved since they are followed.
   const std::vector<Object>& objects() const { return objects_; }
@@ -73,14 +56,13 @@ class ObjectTracker {
   };
 
   void match(double stamp, const std::vector<Candidate>& candidates);
-  void follow(Track& track, double stamp, const Candidate& candidate);
-  Former lookBack(const Track& track, double stamp, const Eigen::Isometry3d& points_from_odom,
-                  const SightHistory& history) const;
-  void decide(Track& track, double stamp, Candidate& candidate, const Former& former);
-  void leaveTrace(Track& track, double stamp, const Candidate& candidate, const std::vector<Eigen::Vector3f>& points,
-                  const Eigen::Isometry3d& odom_from_points) const;
-  void describe(const Track& track, double stamp, const Candidate& candidate,
-                const std::vector<Eigen::Vector3f>& points, const Eigen::Isometry3d& odom_from_points);
+  Track& trackOf(std::size_t candidate_index, double stamp, const Candidate& candidate);
+  static void follow(Track& track, double stamp, const Candidate& candidate);
+  static Former lookBack(const Track& track, double to, const Eigen::Isometry3d& points_from_odom,
+                         const SightHistory& history);
+  void decide(Track& track, double stamp, Candidate& candidate, const std::array<Former, 2>& former);
+  static void leaveTrace(Track& track, const JudgedScan& scan, const Candidate& candidate);
+  void describe(const Track& track, const JudgedScan& scan, const Candidate& candidate);
 
   ObjectConfig config_;
   std::vector<Track> tracks_;

@@ -1,0 +1,37 @@
+// A scan as the steps of evidence see it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+namespace donex {
+
+/// What the grid knows of the place an echo hit.
+enum class Place : std::uint8_t {
+  kUnobserved,  ///< hit for the first time not long ago, and never seen free before; or not asked
+  kNew,         ///< occupied not long ago after it had been seen free: something came
+  kSettled,     ///< occupied for longer than the birth window
+};
+
+/// How an echo takes part in clusters.
+enum class Standing : std::uint8_t {
+  kOut,    ///< in none: on the ground, too high, outside the grid, no echo
+  kIn,     ///< connects
+  kSkirt,  ///< near the ground: belongs to what stands right above it, connects nothing
+};
+
+/// One entry an echo. Points are the echoes in the grid's window, z up [m].
+struct JudgedScan {
+  double stamp = 0.0;  ///< [s]
+  Eigen::Isometry3d odom_from_points = Eigen::Isometry3d::Identity();
+  Eigen::Vector3f sensor = Eigen::Vector3f::Zero();
+  std::vector<Eigen::Vector3f> points;  ///< NaN where the echo is none
+  std::vector<std::uint8_t> is_echo;
+  std::vector<float> heights;  ///< above the local ground [m]
+  std::vector<Standing> standing;
+  std::vector<Place> places;
+};
+
+}  // namespace donex
