@@ -8,6 +8,7 @@ namespace donex {
 BirthMemory::BirthMemory(const Config& config)
     : window_(config), layout_(window_.extent()), brick_of_slot_(layout_.slots(), kNoBrick) {
   if (config.compensation != Compensation::kScroll) throw std::invalid_argument("births cannot be resampled");
+  layout_.scrollTo(window_.minIndex());
 }
 
 void BirthMemory::shift(const Eigen::Isometry3d& odom_from_base) {

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "donex/core/grid_window.h"
+
 namespace donex {
 namespace {
 
@@ -36,7 +38,25 @@ void checkExtent(const char* axis, double min, double max, double voxel_size, st
   faults.push_back(text.str());
 }
 
+/// A slot of the grid's own memory [bytes]: two bit masks a brick, a brick's number, a cell with a range, or with three.
+double bytesASlot(const Config& config, bool is_paper) {
+  if (config.method == Method::kDonex3d) return is_paper ? 16.0 : 4.0;
+  return is_paper ? 16.0 : 40.0;
+}
+
 }  // namespace
+
+double Config::gridBytes() const {
+  const bool is_paper = !evidence.any() && !objects.enabled;
+  Config scrolling = *this;
+  if (!is_paper) scrolling.compensation = Compensation::kScroll;
+  const Eigen::Vector3d extent = GridWindow::extentOf(scrolling);
+  const double slots = method == Method::kDonex3d ? (extent / GridWindow::kBrick).prod() : extent.head<2>().prod();
+  // Clusters look at the ground plan in cells, and in cells of half the size.
+  const double cells_along = extent.head<2>().maxCoeff() * voxel_size / objects.cell;
+  const double ground_plans = objects.enabled ? 5.0 * sizeof(int) * cells_along * cells_along : 0.0;
+  return slots * bytesASlot(*this, is_paper) + ground_plans;
+}
 
 std::vector<std::string> Config::faults() const {
   std::vector<std::string> faults;
@@ -45,6 +65,14 @@ std::vector<std::string> Config::faults() const {
   checkExtent("x", region.x_min, region.x_max, voxel_size, faults);
   checkExtent("y", region.y_min, region.y_max, voxel_size, faults);
   checkExtent("z", region.z_min, region.z_max, voxel_size, faults);
+  const double megabytes = gridBytes() / 1e6;
+  const bool fits = megabytes <= memory_limit;  // false where the region or voxel size is not a number
+  if (!fits && faults.empty()) {
+    std::ostringstream text;
+    text << "the grid needs " << megabytes << " MB, more than memory_limit (" << memory_limit
+         << " MB): choose a smaller region or a larger voxel_size";
+    faults.push_back(text.str());
+  }
   return faults;
 }
 

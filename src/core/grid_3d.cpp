@@ -3,7 +3,9 @@
 namespace donex {
 
 Grid3d::Grid3d(const Config& config)
-    : window_(config), layout_(window_.extent()), remembered_(layout_.slots()), hit_(layout_.slots()) {}
+    : window_(config), layout_(window_.extent()), remembered_(layout_.slots()), hit_(layout_.slots()) {
+  layout_.scrollTo(window_.minIndex());
+}
 
 void Grid3d::shift(const Eigen::Isometry3d& odom_from_base) {
   if (window_.compensation() == Compensation::kScroll) {

@@ -25,19 +25,28 @@ Region sweptRegion(const Region& r) {
   return {-reach, reach, -reach, reach, r.z_min - rise, r.z_max + rise};
 }
 
+Region coveredRegion(const Config& config) {
+  return config.compensation == Compensation::kScroll ? sweptRegion(config.region) : config.region;
+}
+
 }  // namespace
 
+Eigen::Vector3d GridWindow::extentOf(const Config& config) {
+  const Region covered = coveredRegion(config);
+  const Eigen::Array3d size(covered.x_max - covered.x_min, covered.y_max - covered.y_min,
+                            covered.z_max - covered.z_min);
+  // One brick more than the region: the window's lower corner is rounded down to whole bricks.
+  return kBrick * ((size / (config.voxel_size * kBrick)).ceil() + 1.0);
+}
+
 GridWindow::GridWindow(const Config& config)
-    : compensation_(config.compensation), voxel_size_(config.voxel_size), region_(config.region) {
-  const Region covered = compensation_ == Compensation::kScroll ? sweptRegion(region_) : region_;
+    : compensation_(config.compensation),
+      voxel_size_(config.voxel_size),
+      region_(config.region),
+      extent_(extentOf(config).cast<int>()) {
+  const Region covered = coveredRegion(config);
   const Eigen::Vector3d low(covered.x_min, covered.y_min, covered.z_min);
-  const Eigen::Vector3d high(covered.x_max, covered.y_max, covered.z_max);
-  for (int axis = 0; axis < 3; ++axis) {
-    // One brick more than the region: the window's lower corner is rounded down to whole bricks.
-    const double voxels = (high[axis] - low[axis]) / voxel_size_;
-    extent_[axis] = kBrick * (static_cast<int>(std::ceil(voxels / kBrick)) + 1);
-    min_index_[axis] = floorToBrick(low[axis] / voxel_size_);
-  }
+  for (int axis = 0; axis < 3; ++axis) min_index_[axis] = floorToBrick(low[axis] / voxel_size_);
 }
 
 void GridWindow::moveTo(const Eigen::Isometry3d& odom_from_base) {

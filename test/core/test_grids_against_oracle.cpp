@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "donex/core/detector.h"
+#include "donex/core/grid_2d.h"
 #include "donex/core/grid_3d.h"
 #include "support/configs.h"
 #include "support/oracle.h"
@@ -87,11 +88,49 @@ TEST_P(AgainstOracle, Detector3d) {
   }
 }
 
-TEST_P(AgainstOracle, Detector2d) {
+std::map<oracle::Donex2d::Cell, HeightRange> memoryOf(const Grid2d& grid) {
+  std::map<oracle::Donex2d::Cell, HeightRange> ranges;
+  for (int x = 0; x < grid.window().extent().x(); ++x) {
+    for (int y = 0; y < grid.window().extent().y(); ++y) {
+      const HeightRange range = grid.rangeAt(x, y);
+      const oracle::Voxel v = oracle::absolute({x, y, 0}, grid.window());
+      if (!range.empty()) ranges[{v[0], v[1]}] = range;
+    }
+  }
+  return ranges;
+}
+
+TEST_P(AgainstOracle, Grid2d) {
   const Case& c = GetParam();
-  if (c.compensation == Compensation::kResample) return;  // test_grid_2d_resample holds that form to its contents
   const Config config = smallGrid(Method::kDonex2d, c.compensation, c.voxel_size);
   testing::RandomScans scans(c.seed + 2000, c.voxel_size, 12.0F);
+  oracle::Donex2d oracle(config);
+  Grid2d grid(config);
+  for (int k = 0; k < kScans; ++k) {
+    const Scan scan = scans.next(kEchoes);
+    const oracle::Labels expected = oracle.process(scan);
+    GridScan in_grid;
+    grid.shift(scan.odom_from_base);
+    grid.window().enter(scan, in_grid);
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      const bool is_new = k > 0 && in_grid.inside[i] != 0 && !grid.remembers(in_grid.echoes[i]);
+      ASSERT_EQ(is_new, expected[i] != 0) << "scan " << k << " echo " << i;
+    }
+    grid.resize(in_grid);
+    const auto ranges = memoryOf(grid);
+    ASSERT_EQ(ranges.size(), oracle.memory().size()) << "scan " << k;
+    for (const auto& [cell, range] : oracle.memory()) {
+      ASSERT_EQ(ranges.count(cell), 1U);
+      ASSERT_EQ(ranges.at(cell).lo, range.lo);
+      ASSERT_EQ(ranges.at(cell).hi, range.hi);
+    }
+  }
+}
+
+TEST_P(AgainstOracle, Detector2d) {
+  const Case& c = GetParam();
+  const Config config = smallGrid(Method::kDonex2d, c.compensation, c.voxel_size);
+  testing::RandomScans scans(c.seed + 3000, c.voxel_size, 12.0F);
   oracle::Donex2d oracle(config);
   const auto detector = makeDetector(config);
   EchoLabels labels;

@@ -104,7 +104,7 @@ class Donex3d {
   bool is_first_ = true;
 };
 
-/// Scrolling 2D grid; heights in voxel edge lengths above index 0 of the grid's frame.
+/// Heights in voxel edge lengths above the window's floor in the first scan.
 class Donex2d {
  public:
   explicit Donex2d(const Config& config) : window_(config) {}
@@ -115,16 +115,17 @@ class Donex2d {
     window_.moveTo(scan.odom_from_base);
     GridScan in_grid;
     window_.enter(scan, in_grid);
-    for (auto cell = ranges_.begin(); cell != ranges_.end();) {
-      const Voxel v{cell->first[0], cell->first[1], window_.minIndex().z()};
-      cell = inWindow(v, window_) ? std::next(cell) : ranges_.erase(cell);
+    if (window_.compensation() == Compensation::kScroll) {
+      forgetOutside();
+    } else {
+      moveContents();
     }
-    // Heights are measured from the window's floor in the first scan, as a float sum of two exact terms.
     if (is_first_) floor_ = window_.minIndex().z();
     const auto lift = static_cast<float>(window_.minIndex().z() - floor_);
 
     Labels labels(scan.echoes.size(), 0);
     std::map<Cell, HeightRange> own;
+    std::vector<Cell> hit_in_order;
     for (std::size_t i = 0; i < labels.size(); ++i) {
       if (in_grid.inside[i] == 0) continue;
       const Voxel v = absolute(voxelOf(in_grid.echoes[i]), window_);
@@ -133,9 +134,11 @@ class Donex2d {
       const auto remembered = ranges_.find(cell);
       const bool is_new = remembered == ranges_.end() || z < remembered->second.lo || z > remembered->second.hi;
       labels[i] = !is_first_ && is_new;
+      if (own.count(cell) == 0) hit_in_order.push_back(cell);
       own[cell].extend(z);
     }
     for (const auto& [cell, range] : own) ranges_[cell] = range;
+    keepContents(own, hit_in_order);
     is_first_ = false;
     return labels;
   }
@@ -144,8 +147,71 @@ class Donex2d {
   const GridWindow& window() const { return window_; }
 
  private:
+  /// An upright line that moves with the world between two scans of a resampled grid.
+  struct Content2d {
+    Eigen::Vector3d lo_in_odom, hi_in_odom;
+    Cell cell;
+  };
+
+  void forgetOutside() {
+    for (auto cell = ranges_.begin(); cell != ranges_.end();) {
+      const Voxel v{cell->first[0], cell->first[1], window_.minIndex().z()};
+      cell = inWindow(v, window_) ? std::next(cell) : ranges_.erase(cell);
+    }
+  }
+
+  Eigen::Vector3d toWindow(const Eigen::Vector3d& in_odom) const {
+    return window_.odomFromGrid().inverse() * in_odom / window_.voxelSize() - window_.minIndex().cast<double>();
+  }
+  Eigen::Vector3d fromWindow(double x, double y, double z) const {
+    return window_.odomFromGrid() *
+           ((Eigen::Vector3d(x, y, z) + window_.minIndex().cast<double>()) * window_.voxelSize());
+  }
+
+  void moveContents() {
+    ranges_.clear();
+    std::vector<Content2d> kept;
+    for (Content2d content : contents_) {
+      const Eigen::Vector3d lo = toWindow(content.lo_in_odom), hi = toWindow(content.hi_in_odom);
+      const Eigen::Vector2d middle = 0.5 * (lo + hi).head<2>();
+      const Index3 in_window(static_cast<int>(std::floor(middle.x())), static_cast<int>(std::floor(middle.y())), 0);
+      if (!window_.contains(in_window)) continue;
+      const Voxel v = absolute(in_window, window_);
+      content.cell = {v[0], v[1]};
+      const bool is_taken = ranges_.count(content.cell) != 0;
+      HeightRange& range = ranges_[content.cell];
+      range.extend(static_cast<float>(lo.z()));
+      range.extend(static_cast<float>(hi.z()));
+      if (!is_taken) {
+        kept.push_back(content);
+        continue;
+      }
+      for (Content2d& older : kept) {
+        if (older.cell != content.cell) continue;
+        const Eigen::Vector2d at = 0.5 * (toWindow(older.lo_in_odom) + toWindow(older.hi_in_odom)).head<2>();
+        older.lo_in_odom = fromWindow(at.x(), at.y(), range.lo);
+        older.hi_in_odom = fromWindow(at.x(), at.y(), range.hi);
+      }
+    }
+    contents_ = kept;
+  }
+
+  void keepContents(const std::map<Cell, HeightRange>& hit, const std::vector<Cell>& hit_in_order) {
+    std::vector<Content2d> kept;
+    for (const Content2d& content : contents_) {
+      if (hit.count(content.cell) == 0) kept.push_back(content);
+    }
+    for (const Cell& cell : hit_in_order) {
+      const double x = cell[0] - window_.minIndex().x() + 0.5, y = cell[1] - window_.minIndex().y() + 0.5;
+      const HeightRange& range = hit.at(cell);
+      kept.push_back({fromWindow(x, y, range.lo), fromWindow(x, y, range.hi), cell});
+    }
+    contents_ = kept;
+  }
+
   GridWindow window_;
   std::map<Cell, HeightRange> ranges_;
+  std::vector<Content2d> contents_;
   int floor_ = 0;
   bool is_first_ = true;
 };

@@ -84,6 +84,7 @@ struct Config {
   double voxel_size = 0.2;  // [m]
   Region region;
   Compensation compensation = Compensation::kScroll;
+  int memory_limit = 1000;  // [MB]
   EvidenceConfig evidence;
   ObjectConfig objects;
   MotionConfig motion;
@@ -91,6 +92,10 @@ struct Config {
 
   /// Every fault, a sentence each; empty when the configuration can be used.
   std::vector<std::string> faults() const;
+
+  /// Memory that region and voxel size ask for before the first scan [bytes]; what is held only where
+  /// something is hit comes on top (Detector::memoryBytes tells it).
+  double gridBytes() const;
 };
 
 /// How a parameter is called and what it means.
@@ -117,6 +122,7 @@ void visitParameters(Config& config, Visitor&& visit) {
   visit(ParameterInfo{"z_max", "m", "region of interest, vehicle frame, top", true}, r.z_max, -100.0, 100.0);
   visit(ParameterInfo{"compensation", "", "voxel shift of the paper's rule: scroll the grid in the odometry frame's axes, or resample its contents into the vehicle frame; with evidence the grid always scrolls", true},
         config.compensation);
+  visit(ParameterInfo{"memory_limit", "MB", "largest grid that is accepted; region and voxel size decide what a grid needs", true}, config.memory_limit, 10, 100000);
 
   EvidenceConfig& e = config.evidence;
   visit(ParameterInfo{"free_evidence", "", "a place counts as new only where earlier scans saw it free", true}, e.free_evidence);

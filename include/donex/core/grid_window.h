@@ -29,6 +29,10 @@ class GridWindow {
  public:
   explicit GridWindow(const Config& config);
 
+  /// Voxels that the window of a configuration has along each axis, multiples of kBrick; as floating-point
+  /// numbers, so that any configuration can be asked.
+  static Eigen::Vector3d extentOf(const Config& config);
+
   /// Places the window for a scan taken at this vehicle pose.
   void moveTo(const Eigen::Isometry3d& odom_from_base);
 

@@ -1,0 +1,81 @@
+#include "donex/core/config.h"
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "donex/core/detector.h"
+#include "support/configs.h"
+
+namespace donex {
+namespace {
+
+bool names(const std::vector<std::string>& faults, const std::string& what) {
+  for (const std::string& fault : faults) {
+    if (fault.find(what) != std::string::npos) return true;
+  }
+  return false;
+}
+
+TEST(Config, DefaultsHaveNoFault) { EXPECT_TRUE(Config().faults().empty()); }
+
+TEST(Config, EveryFaultIsNamedAtOnce) {
+  Config config;
+  config.voxel_size = 0.0;
+  config.evidence.birth_window = std::nan("");
+  config.objects.min_echoes = -3;
+  config.region.x_min = 10.0;
+  config.region.x_max = -10.0;
+  const auto faults = config.faults();
+  for (const char* name : {"voxel_size", "birth_window", "object_min_echoes", "x_min"}) {
+    EXPECT_TRUE(names(faults, name)) << name;
+  }
+}
+
+TEST(Config, RegionNarrowerThanAVoxelIsRefused) {
+  Config config;
+  config.region.z_min = 1.0;
+  config.region.z_max = 1.1;
+  EXPECT_TRUE(names(config.faults(), "z_min"));
+}
+
+TEST(Config, AGridBeyondTheLimitIsRefusedBeforeItIsAllocated) {
+  for (const Method method : {Method::kDonex3d, Method::kDonex2d}) {
+    Config config = testing::paperConfig(method);
+    config.voxel_size = 0.02;
+    config.region = {-500, 500, -500, 500, -100, 100};
+    EXPECT_TRUE(names(config.faults(), "memory_limit"));
+    EXPECT_THROW(makeDetector(config), std::invalid_argument);
+  }
+}
+
+TEST(Config, WhatTheGridTakesIsWhatWasSaid) {
+  for (const Method method : {Method::kDonex3d, Method::kDonex2d}) {
+    Config config = testing::paperConfig(method);
+    config.voxel_size = 0.1;
+    const auto detector = makeDetector(config);
+    EXPECT_NEAR(static_cast<double>(detector->memoryBytes()), config.gridBytes(), 0.1 * config.gridBytes());
+  }
+}
+
+struct Names {
+  std::set<std::string>& names;
+  template <class... Rest>
+  void operator()(const ParameterInfo& info, Rest&&...) {
+    EXPECT_TRUE(names.insert(info.name).second) << info.name << " stands twice";
+    EXPECT_NE(std::string(info.meaning), "") << info.name;
+  }
+};
+
+TEST(Config, EveryParameterHasANameOfItsOwnAndAMeaning) {
+  Config config;
+  std::set<std::string> names;
+  visitParameters(config, Names{names});
+  EXPECT_GT(names.size(), 30U);
+}
+
+}  // namespace
+}  // namespace donex
