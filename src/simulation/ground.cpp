@@ -9,11 +9,11 @@
 namespace donex::simulation {
 namespace {
 
-constexpr double kCamber = 0.02;       // rise from a road's edge towards its middle
-constexpr double kKerbRun = 0.05;      // [m]
-constexpr double kVergeRun = 6.0;      // [m]
+constexpr double kCamber = 0.02;         // rise from a road's edge towards its middle
+constexpr double kKerbRun = 0.05;        // [m]
+constexpr double kVergeRun = 6.0;        // [m]
 constexpr double kSlopeRounding = 12.0;  // [m]
-constexpr double kClod = 0.5;          // [m]
+constexpr double kClod = 0.5;            // [m]
 constexpr std::uint32_t kRoadLabel = 40;
 constexpr std::uint32_t kPavementLabel = 48;
 

@@ -9,11 +9,11 @@
 namespace donex::simulation {
 namespace {
 
-constexpr int kMoveCells = 16;   // the window follows in steps
+constexpr int kMoveCells = 16;         // the window follows in steps
 constexpr float kStep = 0.2f;          // [m]
 constexpr float kStepGrowth = 0.008f;  // of the distance: far away the rays themselves lie further apart
-constexpr float kSteepest = 0.75f;  // no slope of the samples is steeper: a kerb's height over one cell
-constexpr float kNearest = 0.3f;    // [m]
+constexpr float kSteepest = 0.75f;     // no slope of the samples is steeper: a kerb's height over one cell
+constexpr float kNearest = 0.3f;       // [m]
 
 int cellOf(double coordinate) { return static_cast<int>(std::floor(coordinate / GroundWindow::kCell)); }
 
@@ -33,9 +33,7 @@ void GroundWindow::sampleBlock(int first_column, int first_row, int columns, int
 }
 
 void GroundWindow::moveTo(const Eigen::Vector2d& center) {
-  const auto firstFor = [](double coordinate) {
-    return cellOf(coordinate / kMoveCells) * kMoveCells - kCells / 2;
-  };
+  const auto firstFor = [](double coordinate) { return cellOf(coordinate / kMoveCells) * kMoveCells - kCells / 2; };
   const int column = firstFor(center.x());
   const int row = firstFor(center.y());
   const int right = column - first_column_;

@@ -68,8 +68,8 @@ void addWalkingLimbs(std::vector<Part>& parts, double stature, double way) {
     const Vector3f hip(0.0f, 0.095f * side * h, 0.5f * h);
     const Vector3f shoulder(0.0f, 0.125f * side * h, 0.81f * h);
     parts.push_back(limb(hip, hip + 0.49f * h * Vector3f(std::sin(leg), 0.0f, -std::cos(leg)), 0.045f * h, kDark));
-    parts.push_back(limb(shoulder, shoulder + 0.4f * h * Vector3f(std::sin(arm), 0.08f * side, -std::cos(arm)),
-                         0.028f * h, kSkin));
+    parts.push_back(
+        limb(shoulder, shoulder + 0.4f * h * Vector3f(std::sin(arm), 0.08f * side, -std::cos(arm)), 0.028f * h, kSkin));
   }
 }
 
@@ -123,13 +123,15 @@ Model makeCar(Random& random) {
   const float cabin = 0.82f * half_width;
   auto& parts = model.parts;
   parts.push_back(box({-front, -half_width, clear}, {front, half_width, 0.45f * height}, colour));
-  parts.push_back(box({-front + 0.06f, -half_width + 0.03f, 0.45f * height}, {front - 0.12f, half_width - 0.03f, belt}, colour));
+  parts.push_back(
+      box({-front + 0.06f, -half_width + 0.03f, 0.45f * height}, {front - 0.12f, half_width - 0.03f, belt}, colour));
   parts.push_back(box({roof_rear, -cabin, belt}, {roof_front, cabin, height}, colour));
   parts.push_back(sheet({roof_front + 0.16f * length, belt}, {roof_front, height}, 2.0f * cabin));
   parts.push_back(sheet({roof_rear, height}, {tail, belt}, 2.0f * cabin));
   for (const float side : {-1.0f, 1.0f}) {
     const float x = roof_front + 0.06f * length;
-    parts.push_back(box({x, side * half_width - 0.09f, belt}, {x + 0.1f, side * half_width + 0.09f, belt + 0.14f}, colour));
+    parts.push_back(
+        box({x, side * half_width - 0.09f, belt}, {x + 0.1f, side * half_width + 0.09f, belt + 0.14f}, colour));
   }
   addWheels(model, 0.3f * length, half_width, 0.22f * height, 0.1f);
   addWheels(model, -0.3f * length, half_width, 0.22f * height, 0.1f);

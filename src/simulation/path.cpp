@@ -68,8 +68,8 @@ Path::Projection Path::projectOnto(const Piece& piece, const Eigen::Vector2d& po
   if (k != 0.0) {
     const Eigen::Vector2d from_center = from_start - piece.left / k;
     const Eigen::Vector2d outward = -std::copysign(1.0, k) * piece.left;
-    const double turned = std::atan2(outward.x() * from_center.y() - outward.y() * from_center.x(),
-                                     outward.dot(from_center));
+    const double turned =
+        std::atan2(outward.x() * from_center.y() - outward.y() * from_center.x(), outward.dot(from_center));
     // Seen from the arc's middle, so that the cut lies opposite to it.
     const double half_turn = 0.5 * piece.length * k;
     s = (wrapAngle(turned - half_turn) + half_turn) / k;

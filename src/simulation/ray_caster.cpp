@@ -16,12 +16,9 @@ int floorDivide(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 /// Half edges of a box around the shape, in the shape's axes.
 Eigen::Vector3f boundOf(const Shape& shape) {
   switch (shape.kind) {
-    case ShapeKind::kCylinder:
-      return {shape.half.x(), shape.half.x(), shape.half.z()};
-    case ShapeKind::kSlats:
-      return {shape.half.x(), 0.0f, shape.half.z()};
-    default:
-      return shape.half;
+    case ShapeKind::kCylinder: return {shape.half.x(), shape.half.x(), shape.half.z()};
+    case ShapeKind::kSlats: return {shape.half.x(), 0.0f, shape.half.z()};
+    default: return shape.half;
   }
 }
 
@@ -43,7 +40,8 @@ RayCaster::Extent RayCaster::extentOf(const Target& target, const Stretch& stret
 
   // The box in the upright plane axes (towards its middle, across, up): its half edges there.
   const float distance = center.head<2>().norm();
-  const Eigen::Vector2f towards = distance > 0.0f ? Eigen::Vector2f(center.head<2>() / distance) : Eigen::Vector2f::UnitX();
+  const Eigen::Vector2f towards =
+      distance > 0.0f ? Eigen::Vector2f(center.head<2>() / distance) : Eigen::Vector2f::UnitX();
   float near = kMiss;
   float far = 0.0f;
   float low_side = kMiss;
@@ -100,9 +98,8 @@ void RayCaster::prepare(const std::vector<Target>& targets, const Stretch& stret
     extents_.push_back(extentOf(targets[i], stretch));
     extents_.back().target = static_cast<int>(i);
   }
-  std::sort(extents_.begin(), extents_.end(), [](const Extent& a, const Extent& b) {
-    return a.near != b.near ? a.near < b.near : a.target < b.target;
-  });
+  std::sort(extents_.begin(), extents_.end(),
+            [](const Extent& a, const Extent& b) { return a.near != b.near ? a.near < b.near : a.target < b.target; });
   for (int s = sectorOf(stretch.first_column); s <= sectorOf(stretch.end_column - 1); ++s) {
     sectors_[static_cast<std::size_t>(s)].clear();
   }

@@ -66,12 +66,9 @@ class Side {
     if (!isFree(s, 0.5)) return;
     const PathPoint place = beside(s, 0.5);
     switch (random_.below(3)) {
-      case 0:
-        return builder_.pole(place.position, 6.0, 0.08);
-      case 1:
-        return builder_.sign(place);
-      default:
-        return builder_.block(place, {0.5, 0.4, 1.1}, 99, 0.3f);
+      case 0: return builder_.pole(place.position, 6.0, 0.08);
+      case 1: return builder_.sign(place);
+      default: return builder_.block(place, {0.5, 0.4, 1.1}, 99, 0.3f);
     }
   }
 

@@ -9,8 +9,8 @@ namespace donex::simulation {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kWheelbase = 2.8;   // [m]
-constexpr double kHalfTrack = 0.8;   // [m]
+constexpr double kWheelbase = 2.8;  // [m]
+constexpr double kHalfTrack = 0.8;  // [m]
 
 /// Stands on the ground with four wheels: origin under the middle of the rear axle.
 Eigen::Isometry3d onWheels(const PathPoint& place, const Ground& ground) {

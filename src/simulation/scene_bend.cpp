@@ -39,8 +39,8 @@ struct Ring {
 /// The winding road between the east arm and the south arm: four straights, three bends to the right.
 struct Loop {
   Ring ring;
-  double bend;   ///< radius of the right lane [m]
-  double east;   ///< straights, seen from the ring [m]
+  double bend;  ///< radius of the right lane [m]
+  double east;  ///< straights, seen from the ring [m]
   double south;
 
   double west() const { return ring.lead() + east - bend - kLane; }
@@ -114,7 +114,8 @@ Scene makeBend(std::uint64_t seed) {
   builder.ground().add({Path({ring.radius, 0.0}, 0.5 * kPi).arc(ring.radius, 2.0 * kPi), 4.2});
   builder.ground().add({*middle, kHalfWidth});
   for (const double yaw : {0.5 * kPi, kPi}) {
-    builder.ground().add({Path(ring.radius * Eigen::Vector2d(std::cos(yaw), std::sin(yaw)), yaw).line(kFarArm), kHalfWidth});
+    builder.ground().add(
+        {Path(ring.radius * Eigen::Vector2d(std::cos(yaw), std::sin(yaw)), yaw).line(kFarArm), kHalfWidth});
   }
   Roadside roadside;
   roadside.parked = 0.35;

@@ -5,6 +5,7 @@
 
 #include "donex/simulation/random.h"
 #include "donex/simulation/scene.h"
+#include "track.h"
 
 namespace donex::simulation {
 
@@ -47,15 +48,9 @@ class SceneBuilder {
   /// within `horizon` [s]; false, and nothing added, when there is none.
   bool addClear(const Model& model, Course course, double horizon = 40.0);
 
-  /// Where somebody is, every kTrackStep from kTrackBegin on.
-  struct Track {
-    std::vector<PathPoint> places;
-    Eigen::Vector2d half;  ///< of the footprint, along and across [m]
-  };
-
  private:
-  void place(const Eigen::Vector2d& at, double above_ground, const Shape& shape, std::uint32_t label, float reflectivity,
-             float sway = 0.0f);
+  void place(const Eigen::Vector2d& at, double above_ground, const Shape& shape, std::uint32_t label,
+             float reflectivity, float sway = 0.0f);
   void leaves(const Eigen::Vector2d& at, double above_ground, const Eigen::Vector3f& half, float pitch, float fill,
               float sway);
 

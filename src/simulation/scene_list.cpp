@@ -67,8 +67,6 @@ std::string unknownScene(const std::string& name) {
   return text;
 }
 
-Scene makeScene(const std::string& name, std::uint64_t seed) {
-  return entryOf(name).make(scramble(seed));
-}
+Scene makeScene(const std::string& name, std::uint64_t seed) { return entryOf(name).make(scramble(seed)); }
 
 }  // namespace donex::simulation

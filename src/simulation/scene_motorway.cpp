@@ -8,9 +8,9 @@ namespace donex::simulation {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kHalfWidth = 16.0;     // middle to the outer edge of the hard shoulder [m]
-constexpr double kInnerLane = 3.7;      // middle of the road to the middle of the fast lane [m]
-constexpr double kLaneWidth = 3.75;     // [m]
+constexpr double kHalfWidth = 16.0;  // middle to the outer edge of the hard shoulder [m]
+constexpr double kInnerLane = 3.7;   // middle of the road to the middle of the fast lane [m]
+constexpr double kLaneWidth = 3.75;  // [m]
 
 double laneAt(int lane) { return kInnerLane + kLaneWidth * lane; }
 
@@ -55,11 +55,14 @@ void addBorders(SceneBuilder& builder, const Path& path) {
   for (const double lateral : {-0.55, 0.55}) builder.guardRail(path, 0.0, length, lateral);
   for (const double side : {-1.0, 1.0}) {
     builder.guardRail(path, 0.0, length, side * (kHalfWidth + 0.6));
-    for (double s = 0.0; s < length; s += 50.0) builder.pole(path.at(s, side * (kHalfWidth + 1.4)).position, 1.05, 0.06);
+    for (double s = 0.0; s < length; s += 50.0)
+      builder.pole(path.at(s, side * (kHalfWidth + 1.4)).position, 1.05, 0.06);
     for (double s = 0.0; s < length; s += random.uniform(4.0, 16.0)) {
       const Eigen::Vector2d place = path.at(s, side * (kHalfWidth + random.uniform(4.0, 14.0))).position;
-      if (random.chance(0.35)) builder.tree(place);
-      else builder.bush(place, random.uniform(1.5, 3.0), random.uniform(1.0, 2.4));
+      if (random.chance(0.35))
+        builder.tree(place);
+      else
+        builder.bush(place, random.uniform(1.5, 3.0), random.uniform(1.0, 2.4));
     }
     for (double s = random.uniform(0.0, 300.0); s < length; s += random.uniform(300.0, 700.0)) {
       for (double x = 0.0; x < 120.0; x += 6.0) {

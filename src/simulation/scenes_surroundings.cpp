@@ -145,7 +145,9 @@ Scene makeEmptyRoom(std::uint64_t seed) {
     builder.block({{side * (length + 0.2), 0.0}, 0.0, 0.0}, {0.2, width, 2.9}, 50, 0.5f);
     builder.block({{0.0, side * (width + 0.2)}, 0.0, 0.0}, {length, 0.2, 2.9}, 50, 0.5f);
   }
-  const auto at = [&](double x, double y) { return PathPoint{{x * length, y * width}, random.uniform(-0.2, 0.2), 0.0}; };
+  const auto at = [&](double x, double y) {
+    return PathPoint{{x * length, y * width}, random.uniform(-0.2, 0.2), 0.0};
+  };
   const PathPoint table = at(0.22, 0.2);
   builder.block(table, {1.6, 0.8, 0.04}, 52, 0.4f, 0.72);
   for (const double x : {-0.7, 0.7}) {

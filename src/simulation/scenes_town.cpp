@@ -69,7 +69,8 @@ void addCrossroadsPeople(SceneBuilder& builder) {
     const double yaw = 0.5 * kPi * random.below(4);
     const Eigen::Vector2d arm(std::cos(yaw), std::sin(yaw));
     Course course;
-    course.path = std::make_shared<const Path>(Path(14.0 * arm, yaw).line(45.0).arc(0.8, kPi).line(45.0).arc(0.8, kPi).wrap());
+    course.path =
+        std::make_shared<const Path>(Path(14.0 * arm, yaw).line(45.0).arc(0.8, kPi).line(45.0).arc(0.8, kPi).wrap());
     course.lateral = (random.chance(0.5) ? 5.9 : -6.9) + random.uniform(-0.3, 0.3);
     course.speed = SpeedProfile(random.uniform(0.8, 1.7));
     builder.addClear(makePerson(random), course, kRound);
@@ -91,7 +92,8 @@ Scene makeStreet(std::uint64_t seed) {
   const double start = random.uniform(10.0, 60.0);
   builder.ego(onRightLane(path, start, profile));
   for (const double ahead : {random.uniform(22.0, 32.0), random.uniform(48.0, 70.0), -random.uniform(14.0, 25.0)}) {
-    builder.add(makeAnyVehicle(random), onRightLane(path, start + ahead, swinging(speed, 1.5, 12.0, phase - 0.02 * ahead)));
+    builder.add(makeAnyVehicle(random),
+                onRightLane(path, start + ahead, swinging(speed, 1.5, 12.0, phase - 0.02 * ahead)));
   }
   Traffic traffic;
   traffic.oncoming = 14;

@@ -87,8 +87,13 @@ Scene makeStopAndGo(std::uint64_t seed) {
   const SharedPath path = addTownRoad(builder, 220.0);
   const double stop = random.uniform(3.0, 5.0);
   const auto delayed = [&](double delay) {
-    return SpeedProfile({{delay, 7.0}, {delay + stop, 7.0}, {delay + stop + 2.8, 0.0}, {delay + stop + 6.5, 0.0},
-                         {delay + stop + 10.0, 7.0}, {delay + 18.0, 7.0}}).repeat();
+    return SpeedProfile({{delay, 7.0},
+                         {delay + stop, 7.0},
+                         {delay + stop + 2.8, 0.0},
+                         {delay + stop + 6.5, 0.0},
+                         {delay + stop + 10.0, 7.0},
+                         {delay + 18.0, 7.0}})
+        .repeat();
   };
   const double start = random.uniform(10.0, 60.0);
   builder.ego(onRightLane(path, start, delayed(1.0)));

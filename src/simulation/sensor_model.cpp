@@ -49,8 +49,7 @@ SensorModel makeSensorModel(int beams) {
       append(model, 8.0, 0.4, 21);
       setColumns(model, 1800);
       return model;
-    default:
-      throw std::invalid_argument("beams: 16, 32, 64 or 128, not " + std::to_string(beams));
+    default: throw std::invalid_argument("beams: 16, 32, 64 or 128, not " + std::to_string(beams));
   }
 }
 

@@ -136,12 +136,9 @@ Eigen::Vector3f localNormal(const Shape& shape, const Eigen::Vector3f& p, const 
       if (on_end) return std::copysign(1.0f, relative.z()) * Eigen::Vector3f::UnitZ();
       return Eigen::Vector3f(p.x(), p.y(), 0.0f).normalized();
     }
-    case ShapeKind::kEllipsoid:
-      return relative.cwiseQuotient(shape.half).normalized();
-    case ShapeKind::kLeaves:
-      return -direction.normalized();
-    case ShapeKind::kSlats:
-      return -std::copysign(1.0f, direction.y()) * Eigen::Vector3f::UnitY();
+    case ShapeKind::kEllipsoid: return relative.cwiseQuotient(shape.half).normalized();
+    case ShapeKind::kLeaves: return -direction.normalized();
+    case ShapeKind::kSlats: return -std::copysign(1.0f, direction.y()) * Eigen::Vector3f::UnitY();
   }
   return Eigen::Vector3f::UnitZ();
 }
@@ -163,16 +160,11 @@ Leaf leafOf(const Shape& shape, const Eigen::Vector3i& cell) {
 float intersect(const Shape& shape, const Ray& world_ray, float limit) {
   const Ray ray = shape.toLocal(world_ray);
   switch (shape.kind) {
-    case ShapeKind::kBox:
-      return entry(boxSpan(ray, shape.half), limit);
-    case ShapeKind::kCylinder:
-      return entry(cylinderSpan(ray, shape.half), limit);
-    case ShapeKind::kEllipsoid:
-      return entry(ellipsoidSpan(ray, shape.half), limit);
-    case ShapeKind::kLeaves:
-      return enterLeaves(shape, ray, limit);
-    case ShapeKind::kSlats:
-      return enterSlats(shape, ray, limit);
+    case ShapeKind::kBox: return entry(boxSpan(ray, shape.half), limit);
+    case ShapeKind::kCylinder: return entry(cylinderSpan(ray, shape.half), limit);
+    case ShapeKind::kEllipsoid: return entry(ellipsoidSpan(ray, shape.half), limit);
+    case ShapeKind::kLeaves: return enterLeaves(shape, ray, limit);
+    case ShapeKind::kSlats: return enterSlats(shape, ray, limit);
   }
   return kMiss;
 }

@@ -10,11 +10,11 @@ namespace donex::simulation {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr int kStretches = 12;      // of a turn with distortion: the vehicle moves little in each
-constexpr int kKnots = 24;          // poses a turn; in between the motion is straight on
-constexpr int kGround = -2;         // as Hit::target
+constexpr int kStretches = 12;  // of a turn with distortion: the vehicle moves little in each
+constexpr int kKnots = 24;      // poses a turn; in between the motion is straight on
+constexpr int kGround = -2;     // as Hit::target
 constexpr float kGroundReflectivity = 0.16f;
-constexpr double kFaintest = 3.5e-7;  // of a surface's brightness over its squared distance, half lost [1/m^2]
+constexpr double kFaintest = 3.5e-7;    // of a surface's brightness over its squared distance, half lost [1/m^2]
 constexpr double kWindFrequency = 0.6;  // [Hz]
 
 }  // namespace
@@ -103,7 +103,8 @@ Stretch Sweep::stretchOf(int first_column, int end_column) const {
   return stretch;
 }
 
-Eigen::Vector3f Sweep::normalOf(const Echo& echo, const Eigen::Vector3f& point, const Eigen::Vector3f& direction) const {
+Eigen::Vector3f Sweep::normalOf(const Echo& echo, const Eigen::Vector3f& point,
+                                const Eigen::Vector3f& direction) const {
   if (echo.hit.target == kGround) {
     const Eigen::Vector2d place = point.head<2>().cast<double>() + anchor_.head<2>();
     return window_.normal(place.x(), place.y());

@@ -110,9 +110,10 @@ TEST(GroundWindow, MeetsEveryRayWhereMarchingDoes) {
     const double yaw = random.uniform(-3.1, 3.1);
     const double roll = random.uniform(-0.03, 0.03);
     const double pitch = random.uniform(-0.03, 0.03);
-    const Eigen::Matrix3d axes = (Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
-                                  Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()) *
-                                  Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX())).toRotationMatrix();
+    const Eigen::Matrix3d axes =
+        (Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()) *
+         Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()))
+            .toRotationMatrix();
     const RayFan fan{{place.x(), place.y(), ground.height(place) + 1.75}, axes.col(0), axes.col(2), model.slopes};
     std::vector<float> parameters;
     window.meet(fan, parameters);

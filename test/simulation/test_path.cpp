@@ -58,7 +58,8 @@ TEST(Path, ProjectionIsTheNearestOfManySamples) {
     for (int i = 0; i < 20; ++i) {
       const Eigen::Vector2d point(random.uniform(-100.0, 100.0), random.uniform(-100.0, 100.0));
       double nearest = 1e9;
-      for (double s = 0.0; s <= path.length(); s += 0.05) nearest = std::min(nearest, (path.at(s).position - point).norm());
+      for (double s = 0.0; s <= path.length(); s += 0.05)
+        nearest = std::min(nearest, (path.at(s).position - point).norm());
       EXPECT_NEAR(path.project(point).distance, nearest, 0.03);
     }
   }
@@ -69,7 +70,8 @@ TEST(Path, CircuitEndsWhereItBegan) {
   for (int i = 0; i < 2; ++i) circuit.line(50.0).arc(12.0, kPi);
   circuit.wrap();
   EXPECT_NEAR((circuit.at(circuit.length() - 1e-9).position - circuit.at(0.0).position).norm(), 0.0, 1e-6);
-  EXPECT_NEAR((circuit.at(17.0 - 3.0 * circuit.length(), 1.5).position - circuit.at(17.0, 1.5).position).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((circuit.at(17.0 - 3.0 * circuit.length(), 1.5).position - circuit.at(17.0, 1.5).position).norm(), 0.0,
+              1e-9);
 }
 
 void expectIntegral(const SpeedProfile& profile, double from, double to) {

@@ -81,7 +81,8 @@ void compare(std::uint64_t seed, bool moving, int& hits) {
     caster.cast(column, sensor, time, found);
     for (std::size_t beam = 0; beam < found.size(); ++beam) {
       const Hit expected = askAll(targets, model, sensor, time, column, beam, limit);
-      ASSERT_EQ(found[beam].parameter, expected.parameter) << "seed " << seed << " column " << column << " beam " << beam;
+      ASSERT_EQ(found[beam].parameter, expected.parameter)
+          << "seed " << seed << " column " << column << " beam " << beam;
       hits += expected.target != kNoTarget ? 1 : 0;
     }
   }

@@ -14,12 +14,9 @@ double implicitValue(const Shape& shape, const Eigen::Vector3d& world) {
   const Eigen::Vector3d p = shape.axes.cast<double>().transpose() * (world - shape.center.cast<double>());
   const Eigen::Vector3d relative = p.cwiseQuotient(shape.half.cast<double>());
   switch (shape.kind) {
-    case ShapeKind::kBox:
-      return relative.cwiseAbs().maxCoeff() - 1.0;
-    case ShapeKind::kCylinder:
-      return std::max(relative.head<2>().norm(), std::abs(relative.z())) - 1.0;
-    default:
-      return relative.norm() - 1.0;
+    case ShapeKind::kBox: return relative.cwiseAbs().maxCoeff() - 1.0;
+    case ShapeKind::kCylinder: return std::max(relative.head<2>().norm(), std::abs(relative.z())) - 1.0;
+    default: return relative.norm() - 1.0;
   }
 }
 
@@ -91,8 +88,7 @@ TEST_P(Solids, NormalPointsOutwardsAndAgainstTheRay) {
   EXPECT_GT(hits, 100);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, Solids,
-                         testing::Values(ShapeKind::kBox, ShapeKind::kCylinder, ShapeKind::kEllipsoid));
+INSTANTIATE_TEST_SUITE_P(Kinds, Solids, testing::Values(ShapeKind::kBox, ShapeKind::kCylinder, ShapeKind::kEllipsoid));
 
 /// All leaves of the crown, one by one.
 float nearestLeaf(const Shape& shape, const Ray& world) {

@@ -10,20 +10,21 @@
 
 namespace donex::simulation {
 
-/// The rays of one firing: all begin at `origin` and lie in one plane; ray i has the direction forward + slopes[i] * up.
+/// The rays of one firing: all begin at `origin` and lie in one plane; ray i has the direction forward + slopes[i] *
+/// up.
 struct RayFan {
-  Eigen::Vector3d origin;   ///< scene frame [m]
-  Eigen::Vector3d forward;  ///< unit, roughly level
-  Eigen::Vector3d up;       ///< unit, roughly upright
+  Eigen::Vector3d origin;            ///< scene frame [m]
+  Eigen::Vector3d forward;           ///< unit, roughly level
+  Eigen::Vector3d up;                ///< unit, roughly upright
   const std::vector<float>& slopes;  ///< rising
 };
 
 /// Between the samples the height is bilinear; this is the ground that the rays see.
 class GroundWindow {
  public:
-  static constexpr int kCells = 1024;      ///< along an edge, a power of two
-  static constexpr double kCell = 0.2;     ///< [m]
-  static constexpr double kReach = 95.0;   ///< rays are followed this far from the centre, level [m]
+  static constexpr int kCells = 1024;     ///< along an edge, a power of two
+  static constexpr double kCell = 0.2;    ///< [m]
+  static constexpr double kReach = 95.0;  ///< rays are followed this far from the centre, level [m]
 
   /// `ground` must outlive the window.
   explicit GroundWindow(const Ground& ground);

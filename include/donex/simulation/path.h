@@ -10,8 +10,8 @@ namespace donex::simulation {
 
 struct PathPoint {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< [m]
-  double yaw = 0.0;        ///< direction of travel [rad]
-  double curvature = 0.0;  ///< to the left [1/m]
+  double yaw = 0.0;                                    ///< direction of travel [rad]
+  double curvature = 0.0;                              ///< to the left [1/m]
 
   Eigen::Vector2d forward() const { return {std::cos(yaw), std::sin(yaw)}; }
   Eigen::Vector2d left() const { return {-std::sin(yaw), std::cos(yaw)}; }
@@ -35,8 +35,8 @@ class Path {
 
   struct Projection {
     double s = 0.0;
-    double lateral = 0.0;  ///< to the left [m]
-    double distance = 0.0; ///< differs from |lateral| beyond the ends [m]
+    double lateral = 0.0;   ///< to the left [m]
+    double distance = 0.0;  ///< differs from |lateral| beyond the ends [m]
   };
   Projection project(const Eigen::Vector2d& point) const;
 

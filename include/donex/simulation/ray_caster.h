@@ -10,7 +10,7 @@ namespace donex::simulation {
 
 /// A solid during one turn of the sensor; it moves straight on.
 struct Target {
-  Shape shape;  ///< at `time`
+  Shape shape;                                         ///< at `time`
   Eigen::Vector3f velocity = Eigen::Vector3f::Zero();  ///< [m/s]
   float time = 0.0f;                                   ///< [s]
 };

@@ -27,9 +27,9 @@ struct Fixture {
 /// Along a path by a speed.
 struct Course {
   std::shared_ptr<const Path> path;
-  double start = 0.0;    ///< where on the path at the profile's first knot [m]
-  double lateral = 0.0;  ///< to the left of the path [m]
-  bool backwards = false;  ///< against the path's direction
+  double start = 0.0;         ///< where on the path at the profile's first knot [m]
+  double lateral = 0.0;       ///< to the left of the path [m]
+  bool backwards = false;     ///< against the path's direction
   double shift = 0.0;         ///< further to the left in the end: pulls out, or changes the lane [m]
   double shift_begin = 0.0;   ///< after this way [m]
   double shift_length = 0.0;  ///< over this way; 0: no shift [m]

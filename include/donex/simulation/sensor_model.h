@@ -8,9 +8,9 @@
 namespace donex::simulation {
 
 struct SensorModel {
-  std::vector<float> slopes;  ///< tangents of the beams' elevations, rising; one a ring
+  std::vector<float> slopes;              ///< tangents of the beams' elevations, rising; one a ring
   std::vector<Eigen::Vector2d> headings;  ///< unit, sensor axes; one a column. Begins at the rear, clockwise from above
-  float min_range = 0.9f;     ///< [m]
+  float min_range = 0.9f;                 ///< [m]
 
   int beams() const { return static_cast<int>(slopes.size()); }
   int columns() const { return static_cast<int>(headings.size()); }  ///< firings a turn

@@ -26,9 +26,9 @@ inline constexpr float kMiss = std::numeric_limits<float>::infinity();
 
 struct Shape {
   ShapeKind kind = ShapeKind::kBox;
-  Eigen::Vector3f center = Eigen::Vector3f::Zero();   ///< [m]
-  Eigen::Matrix3f axes = Eigen::Matrix3f::Identity(); ///< columns: the shape's axes in the frame of `center`
-  Eigen::Vector3f half = Eigen::Vector3f::Ones();     ///< [m]
+  Eigen::Vector3f center = Eigen::Vector3f::Zero();    ///< [m]
+  Eigen::Matrix3f axes = Eigen::Matrix3f::Identity();  ///< columns: the shape's axes in the frame of `center`
+  Eigen::Vector3f half = Eigen::Vector3f::Ones();      ///< [m]
   float pitch = 0.2f;      ///< leaves: edge of a lattice cell, one leaf at most in each; slats: distance [m]
   float fill = 0.5f;       ///< leaves: fraction of the cells with a leaf; slats: fraction that is wood
   std::uint32_t seed = 0;  ///< leaves

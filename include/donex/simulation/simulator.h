@@ -39,10 +39,10 @@ struct SimulatedScan {
 
 /// A thing that can move by itself, at one moment.
 struct MoverTruth {
-  std::uint32_t label = 0;  ///< of its echoes
+  std::uint32_t label = 0;                                          ///< of its echoes
   Eigen::Isometry3d odom_from_box = Eigen::Isometry3d::Identity();  ///< x forward, at the box' centre
-  Eigen::Vector3d size = Eigen::Vector3d::Zero();      ///< of the box that holds every part of it [m]
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< odometry frame [m/s]
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();                   ///< of the box that holds every part of it [m]
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();               ///< odometry frame [m/s]
 };
 
 inline constexpr double kMovingSpeed = 0.3;  ///< a thing faster than this moves [m/s]

@@ -59,12 +59,12 @@ class Sweep {
   GroundWindow window_;
   RayCaster caster_;
 
-  double time_ = 0.0;                 // when the turn is complete
-  std::uint64_t noise_seed_ = 0;      // of the turn
-  std::vector<Eigen::Isometry3d> knots_;  // sensor poses in the scene, evenly over the turn
+  double time_ = 0.0;                                 // when the turn is complete
+  std::uint64_t noise_seed_ = 0;                      // of the turn
+  std::vector<Eigen::Isometry3d> knots_;              // sensor poses in the scene, evenly over the turn
   Eigen::Vector3d anchor_ = Eigen::Vector3d::Zero();  // targets are kept relative to it
   std::vector<Target> targets_;
-  std::vector<Surface> surfaces_;     // one a target
+  std::vector<Surface> surfaces_;  // one a target
   std::vector<Hit> hits_;
   std::vector<float> ground_;
   std::vector<SimulatedEcho>* echoes_ = nullptr;
