@@ -1,0 +1,292 @@
+// Which places are new: against the plain rules on a room whose walls come and go, and case by case.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "donex/core/newness.h"
+#include "support/newness_oracle.h"
+
+namespace donex {
+namespace {
+
+Config gridOf(double voxel_size = 0.5) {
+  Config config;
+  config.voxel_size = voxel_size;
+  config.region = {-12.0, 12.0, -12.0, 12.0, -2.0, 3.0};
+  return config;
+}
+
+/// What the detector does around newness: the window, the points, the history.
+template <class Newness>
+class Rig {
+ public:
+  explicit Rig(const Config& config)
+      : newness(config),
+        clock(config.evidence.birth_age ? config.evidence.birth_window : 0.0),
+        history(config.evidence.history_length, 0.0, static_cast<float>(config.evidence.sight_margin),
+                {config.evidence.careful_sight, 0.038}) {}
+
+  /// Places of the scan's echoes; `check(echo in the window, the same in m, place)` for those in the grid.
+  template <class Check>
+  void process(const Scan& scan, Check&& check) {
+    clock.begin(scan.stamp);
+    newness.shift(scan.odom_from_base);
+    const GridWindow& window = newness.window();
+    GridScan in_grid;
+    window.enter(scan, in_grid);
+    const Eigen::Vector3d corner = window.minIndex().template cast<double>() * window.voxelSize();
+    history.askFrom(window.odomFromGrid() * Eigen::Translation3d(corner));
+    for (std::size_t i = 0; i < scan.echoes.size(); ++i) {
+      if (in_grid.inside[i] == 0) continue;
+      const Eigen::Vector3f point = in_grid.echoes[i] * static_cast<float>(window.voxelSize());
+      check(in_grid.echoes[i], point, newness.judge(in_grid.echoes[i], point, clock, history));
+    }
+    history.add(scan, std::vector<std::uint8_t>(scan.echoes.size(), 1));
+  }
+
+  /// Place of the scan's first echo.
+  Place first(const Scan& scan) {
+    std::vector<Place> places;
+    process(scan, [&](const Eigen::Vector3f&, const Eigen::Vector3f&, Place place) { places.push_back(place); });
+    return places.at(0);
+  }
+
+  Newness newness;
+  ScanClock clock;
+  SightHistory history;
+};
+
+/// Walls ahead by sector, each now near, now far, now gone; the vehicle drives and turns.
+class RestlessRoom {
+ public:
+  RestlessRoom(unsigned seed, bool moves) : random_(seed), moves_(moves) { ranges_.fill(9.0); }
+
+  Scan next() {
+    constexpr std::array<double, 5> kRanges{2.5, 5.0, 7.0, 9.0, 30.0};
+    for (double& range : ranges_) {
+      if (uniform(0, 1) < 0.15) range = kRanges[std::uniform_int_distribution<std::size_t>(0, 4)(random_)];
+    }
+    if (moves_) pose_ = pose_ * Eigen::Translation3d(uniform(0, 0.4), 0.0, uniform(-0.2, 0.2)) *
+                        Eigen::AngleAxisd(uniform(-0.03, 0.04), Eigen::Vector3d::UnitZ());
+    Scan scan;
+    scan.stamp = stamp_ += uniform(0.05, 0.2);
+    scan.odom_from_base = pose_;
+    for (int azimuth = -90; azimuth < 90; ++azimuth) {  // 0.7 degrees each
+      for (int beam = -2; beam <= 2; ++beam) {
+        if (uniform(0, 1) < 0.1) continue;
+        const double angle = (azimuth + uniform(-0.1, 0.1)) * M_PI / 260.0, slope = 0.03 * beam;
+        const double range = ranges_[static_cast<std::size_t>((azimuth + 90) / 12)] + uniform(-0.2, 0.2);
+        scan.echoes.push_back((range * Eigen::Vector3d(std::cos(angle), std::sin(angle), slope)).cast<float>());
+      }
+    }
+    return scan;
+  }
+
+ private:
+  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+
+  std::mt19937 random_;
+  bool moves_;
+  std::array<double, 15> ranges_{};
+  Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();
+  double stamp_ = 0.0;
+};
+
+struct Case {
+  unsigned switches;  ///< bits: free_evidence, careful_sight, birth_age, neighbourhood
+  bool moves;
+};
+
+class AgainstThePlainRules : public ::testing::TestWithParam<Case> {
+ protected:
+  Config config() const {
+    Config config = gridOf();
+    config.evidence.free_evidence = (GetParam().switches & 1U) != 0;
+    config.evidence.careful_sight = (GetParam().switches & 2U) != 0;
+    config.evidence.birth_age = (GetParam().switches & 4U) != 0;
+    config.evidence.neighbourhood = (GetParam().switches & 8U) != 0;
+    config.evidence.birth_window = 0.9;
+    return config;
+  }
+
+  template <class Newness, class Oracle>
+  std::array<int, 3> compare() {
+    Rig<Newness> rig(config());
+    Oracle oracle(config());
+    RestlessRoom room(GetParam().switches + 100U, GetParam().moves);
+    std::array<int, 3> places{};
+    int different = 0;
+    for (int k = 0; k < 30 && different == 0; ++k) {
+      const Scan scan = room.next();
+      oracle.begin(scan);
+      rig.process(scan, [&](const Eigen::Vector3f& in_window, const Eigen::Vector3f& point, Place place) {
+        const Place expected = oracle.judge(in_window, point, rig.history);
+        if (place != expected && different++ == 0) {
+          ADD_FAILURE() << "scan " << k << " at " << in_window.transpose() << ": " << static_cast<int>(place)
+                        << " instead of " << static_cast<int>(expected);
+        }
+        ++places[static_cast<std::size_t>(place)];
+      });
+    }
+    return places;
+  }
+};
+
+void expectAllKinds(const std::array<int, 3>& places) {
+  for (const int count : places) EXPECT_GT(count, 30);
+}
+
+TEST_P(AgainstThePlainRules, In3d) { expectAllKinds(compare<Newness3d, oracle::Newness3d>()); }
+TEST_P(AgainstThePlainRules, In2d) { expectAllKinds(compare<Newness2d, oracle::Newness2d>()); }
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  for (unsigned switches = 0; switches < 16; ++switches) {
+    for (const bool moves : {false, true}) all.push_back({switches, moves});
+  }
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Switches, AgainstThePlainRules, ::testing::ValuesIn(cases()));
+
+/// A wall all around at 10 m, and, where `range` is given, something before it ahead. The first echo lies ahead.
+Scan ahead(double stamp, double range = 10.0, const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity()) {
+  Scan scan;
+  scan.stamp = stamp;
+  scan.odom_from_base = pose;
+  for (int azimuth = 0; azimuth < 720; ++azimuth) {
+    for (int beam = 0; beam < 5; ++beam) {
+      const double angle = azimuth * M_PI / 360.0, slope = 0.02 * beam + 0.01;
+      const bool is_ahead = azimuth < 20 || azimuth > 700;
+      const Eigen::Vector3d direction = Eigen::Vector3d(std::cos(angle), std::sin(angle), slope).normalized();
+      scan.echoes.push_back(((is_ahead ? range : 10.0) * direction).cast<float>());
+    }
+  }
+  return scan;
+}
+
+template <class Newness>
+class Newnesses : public ::testing::Test {};
+using Both = ::testing::Types<Newness3d, Newness2d>;
+TYPED_TEST_SUITE(Newnesses, Both, );
+
+TYPED_TEST(Newnesses, WhatComesIntoFreeSpaceIsNewUntilItsBirthWindowIsOver) {
+  Config config = gridOf(0.2);
+  config.evidence.birth_window = 1.0;
+  Rig<TypeParam> rig(config);
+  for (int k = 0; k < 10; ++k) rig.first(ahead(0.125 * k));
+  for (int k = 10; k <= 30; ++k) {
+    const bool young = 0.125 * (k - 10) <= 1.0;
+    EXPECT_EQ(rig.first(ahead(0.125 * k, 6.0)), young ? Place::kNew : Place::kSettled) << "scan " << k;
+  }
+}
+
+TYPED_TEST(Newnesses, WithoutAnAgeOnlyTheScanOfBirthIsNew) {
+  Config config = gridOf(0.2);
+  config.evidence.birth_age = false;
+  Rig<TypeParam> rig(config);
+  for (int k = 0; k < 10; ++k) rig.first(ahead(0.125 * k));
+  EXPECT_EQ(rig.first(ahead(2.0, 6.0)), Place::kNew);
+  EXPECT_EQ(rig.first(ahead(2.125, 6.0)), Place::kSettled);
+}
+
+TYPED_TEST(Newnesses, NeverHitIsNewOnlyWithoutFreeEvidence) {
+  for (const bool free_evidence : {true, false}) {
+    Config config = gridOf(0.2);
+    config.evidence.free_evidence = free_evidence;
+    Rig<TypeParam> rig(config);
+    EXPECT_EQ(rig.first(ahead(0.0, 6.0)), Place::kUnobserved) << "nothing is new in the first scan";
+    // Behind what was seen: hidden before, never seen free.
+    EXPECT_EQ(rig.first(ahead(0.1, 9.0)), free_evidence ? Place::kUnobserved : Place::kNew);
+  }
+}
+
+TYPED_TEST(Newnesses, UnobservedSettlesAfterHalfASecond) {
+  Rig<TypeParam> rig(gridOf(0.2));
+  for (int k = 0; k <= 8; ++k) {
+    EXPECT_EQ(rig.first(ahead(0.125 * k)), k <= 4 ? Place::kUnobserved : Place::kSettled) << "scan " << k;
+  }
+}
+
+TYPED_TEST(Newnesses, ASettledPlaceIsForgottenOnlyByEnoughScansThatSeeThrough) {
+  for (int through = 0; through <= 6; ++through) {
+    Config config = gridOf(0.2);
+    config.evidence.neighbourhood = false;  // what stood beside it is settled as well
+    Rig<TypeParam> rig(config);
+    double stamp = 0.0;
+    for (int k = 0; k < 10; ++k) rig.first(ahead(stamp += 0.1, 6.0));
+    for (int k = 0; k < through; ++k) rig.first(ahead(stamp += 0.1, 10.0));
+    const Place expected = through >= config.evidence.settled_free_scans ? Place::kNew : Place::kSettled;
+    EXPECT_EQ(rig.first(ahead(stamp += 0.1, 6.0)), expected) << through << " scans saw through";
+  }
+}
+
+TYPED_TEST(Newnesses, AShadowForgetsNothing) {
+  Rig<TypeParam> rig(gridOf(0.2));
+  double stamp = 0.0;
+  for (int k = 0; k < 10; ++k) rig.first(ahead(stamp += 0.1, 8.0));
+  for (int k = 0; k < 10; ++k) rig.first(ahead(stamp += 0.1, 4.0));
+  EXPECT_EQ(rig.first(ahead(stamp += 0.1, 8.0)), Place::kSettled);
+}
+
+TYPED_TEST(Newnesses, TheFlickerOfASurfaceIsNotNew) {
+  for (const bool neighbourhood : {true, false}) {
+    Config config = gridOf(0.2);
+    config.evidence.neighbourhood = neighbourhood;
+    config.evidence.sight_margin = 0.02;  // so that the place before the wall is seen free at all
+    Rig<TypeParam> rig(config);
+    double stamp = 0.0;
+    for (int k = 0; k < 10; ++k) rig.first(ahead(stamp += 0.1, 10.05));
+    const Place place = rig.first(ahead(stamp += 0.1, 9.95));
+    EXPECT_EQ(place == Place::kNew, !neighbourhood);
+  }
+}
+
+TYPED_TEST(Newnesses, WhatLeavesTheWindowIsForgotten) {
+  const Eigen::Isometry3d far_away(Eigen::Translation3d(200.0, 0.0, 0.0));
+  for (const bool leaves : {true, false}) {
+    Rig<TypeParam> rig(gridOf(0.2));
+    double stamp = 0.0;
+    for (int k = 0; k < 10; ++k) rig.first(ahead(stamp += 0.1));
+    rig.first(ahead(stamp += 0.1, 10.0, leaves ? far_away : Eigen::Isometry3d::Identity()));
+    EXPECT_EQ(rig.first(ahead(stamp += 0.1)), leaves ? Place::kUnobserved : Place::kSettled);
+  }
+}
+
+TYPED_TEST(Newnesses, ResetForgetsEverything) {
+  Rig<TypeParam> rig(gridOf(0.2));
+  for (int k = 0; k < 10; ++k) rig.first(ahead(0.1 * k));
+  rig.newness.reset();
+  rig.clock.reset();
+  rig.history.reset();
+  EXPECT_EQ(rig.first(ahead(0.0)), Place::kUnobserved);
+}
+
+TYPED_TEST(Newnesses, MemoryIsBoundedByTheRegion) {
+  Rig<TypeParam> rig(gridOf(0.5));
+  std::size_t most_in_the_first_part = 0;
+  for (int k = 0; k < 300; ++k) {
+    rig.first(ahead(0.1 * k, 6.0, Eigen::Isometry3d(Eigen::Translation3d(0.9 * k, 0.3 * k, 0.0))));
+    if (k < 100) most_in_the_first_part = std::max(most_in_the_first_part, rig.newness.memoryBytes());
+  }
+  EXPECT_LE(rig.newness.memoryBytes(), 2 * most_in_the_first_part);
+}
+
+TEST(ScanClock, TellsStampsAsFarAsItRemembers) {
+  ScanClock clock(1.0);
+  for (int k = 1; k <= 1000; ++k) clock.begin(0.5 * k);
+  EXPECT_EQ(clock.scan(), 1000U);
+  EXPECT_EQ(clock.stampOf(1000), 500.0);
+  EXPECT_EQ(clock.stampOf(900), 450.0);
+  EXPECT_LT(clock.stampOf(1), -1e300);
+  EXPECT_TRUE(clock.isYoung(998, true));
+  EXPECT_FALSE(clock.isYoung(997, true));
+  EXPECT_TRUE(clock.isYoung(999, false)) << "found half a second ago";
+  EXPECT_FALSE(clock.isYoung(998, false));
+}
+
+}  // namespace
+}  // namespace donex
