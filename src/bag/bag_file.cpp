@@ -1,7 +1,5 @@
 #include "donex/bag/bag_file.h"
 
-#include <unistd.h>
-
 #include <cstdint>
 #include <fstream>
 #include <map>
@@ -13,6 +11,7 @@
 #include <fmt/format.h>
 #include <rosbag/view.h>
 #include <tf2_msgs/TFMessage.h>
+#include <unistd.h>
 
 namespace donex {
 namespace fs = std::filesystem;
@@ -66,7 +65,8 @@ void requireFreeConnection(const fs::path& file) {
   for (const rosbag::ConnectionInfo* connection : view.getConnections()) ids.insert(connection->id);
   const bool is_free = ids.empty() || *ids.rbegin() < ids.size();
   if (is_free) return;
-  throw DataError(file.string() + ": its connections are not numbered 0, 1, 2, ...; 'rosbag filter IN OUT True' does that");
+  throw DataError(file.string() +
+                  ": its connections are not numbered 0, 1, 2, ...; 'rosbag filter IN OUT True' does that");
 }
 
 }  // namespace
@@ -139,8 +139,8 @@ BagWriter::BagWriter(fs::path file, const fs::path& original) : BagWriter(std::m
     bag_.open(temporary_.string(), rosbag::bagmode::Append);
     bag_.setCompression(compressionOf(original));
   } catch (const std::exception& error) {
-    throw DataError(fmt::format("{}: cannot be written as a copy of {} ({})", file_.string(), original.string(),
-                                error.what()));
+    throw DataError(
+        fmt::format("{}: cannot be written as a copy of {} ({})", file_.string(), original.string(), error.what()));
   }
 }
 

@@ -17,7 +17,9 @@ namespace {
 class Labeler {
  public:
   Labeler(const LabelBagOptions& options, rosbag::Bag& out, LabelBagSummary& summary)
-      : labeled_topic_(absoluteTopic(options.labeled)), out_(out), summary_(summary),
+      : labeled_topic_(absoluteTopic(options.labeled)),
+        out_(out),
+        summary_(summary),
         pipeline_(options.config, tf_, events()) {}
 
   void add(const rosbag::MessageInstance& message);

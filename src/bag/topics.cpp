@@ -15,7 +15,8 @@ using Topics = std::map<std::string, std::string>;  // topic -> type
 /// A topic recorded from several publishers has several connections.
 Topics topicsOf(rosbag::View& view) {
   Topics topics;
-  for (const rosbag::ConnectionInfo* connection : view.getConnections()) topics[connection->topic] = connection->datatype;
+  for (const rosbag::ConnectionInfo* connection : view.getConnections())
+    topics[connection->topic] = connection->datatype;
   return topics;
 }
 
@@ -33,8 +34,8 @@ std::string onlyTopic(const Topics& topics, const std::string& datatype, const s
   }
   if (fitting.size() == 1) return fitting.front();
   if (fitting.empty()) throw DataError(fmt::format("{}: has no topic of type {}{}", file, datatype, listed(topics)));
-  throw DataError(fmt::format("{}: has {} topics of type {}, choose one with {}{}", file, fitting.size(), datatype, option,
-                              listed(topics)));
+  throw DataError(fmt::format("{}: has {} topics of type {}, choose one with {}{}", file, fitting.size(), datatype,
+                              option, listed(topics)));
 }
 
 std::string namedTopic(const Topics& topics, const std::string& wanted, const std::string& datatype,
@@ -42,7 +43,8 @@ std::string namedTopic(const Topics& topics, const std::string& wanted, const st
   for (const auto& [topic, type] : topics) {
     if (absoluteTopic(topic) != absoluteTopic(wanted)) continue;
     if (type == datatype) return topic;
-    throw DataError(fmt::format("{}: topic {} is of type {}, must be {}{}", file, topic, type, datatype, listed(topics)));
+    throw DataError(
+        fmt::format("{}: topic {} is of type {}, must be {}{}", file, topic, type, datatype, listed(topics)));
   }
   throw DataError(fmt::format("{}: has no topic {} ({}){}", file, wanted, option, listed(topics)));
 }
@@ -54,7 +56,8 @@ std::string absoluteTopic(const std::string& topic) { return topic.rfind('/', 0)
 std::string chooseTopic(rosbag::View& view, const std::string& wanted, const std::string& datatype,
                         const std::string& file, const std::string& option) {
   const Topics topics = topicsOf(view);
-  return wanted.empty() ? onlyTopic(topics, datatype, file, option) : namedTopic(topics, wanted, datatype, file, option);
+  return wanted.empty() ? onlyTopic(topics, datatype, file, option)
+                        : namedTopic(topics, wanted, datatype, file, option);
 }
 
 void requireNewTopic(rosbag::View& view, const std::string& topic, const std::string& file) {

@@ -11,16 +11,40 @@ namespace donex {
 namespace {
 
 const std::map<std::uint32_t, std::string>& classNames() {
-  static const std::map<std::uint32_t, std::string> names{
-      {9, "static"},           {10, "car"},           {11, "bicycle"},         {13, "bus"},
-      {15, "motorcycle"},      {16, "on-rails"},      {18, "truck"},           {20, "other vehicle"},
-      {30, "person"},          {31, "bicyclist"},     {32, "motorcyclist"},    {40, "road"},
-      {44, "parking"},         {48, "sidewalk"},      {49, "other ground"},    {50, "building"},
-      {51, "fence"},           {52, "other structure"}, {60, "lane marking"},  {70, "vegetation"},
-      {71, "trunk"},           {72, "terrain"},       {80, "pole"},            {81, "traffic sign"},
-      {99, "other object"},    {251, "moving"},       {252, "moving car"},     {253, "moving bicyclist"},
-      {254, "moving person"},  {255, "moving motorcyclist"}, {256, "moving on-rails"}, {257, "moving bus"},
-      {258, "moving truck"},   {259, "moving other vehicle"}};
+  static const std::map<std::uint32_t, std::string> names{{9, "static"},
+                                                          {10, "car"},
+                                                          {11, "bicycle"},
+                                                          {13, "bus"},
+                                                          {15, "motorcycle"},
+                                                          {16, "on-rails"},
+                                                          {18, "truck"},
+                                                          {20, "other vehicle"},
+                                                          {30, "person"},
+                                                          {31, "bicyclist"},
+                                                          {32, "motorcyclist"},
+                                                          {40, "road"},
+                                                          {44, "parking"},
+                                                          {48, "sidewalk"},
+                                                          {49, "other ground"},
+                                                          {50, "building"},
+                                                          {51, "fence"},
+                                                          {52, "other structure"},
+                                                          {60, "lane marking"},
+                                                          {70, "vegetation"},
+                                                          {71, "trunk"},
+                                                          {72, "terrain"},
+                                                          {80, "pole"},
+                                                          {81, "traffic sign"},
+                                                          {99, "other object"},
+                                                          {251, "moving"},
+                                                          {252, "moving car"},
+                                                          {253, "moving bicyclist"},
+                                                          {254, "moving person"},
+                                                          {255, "moving motorcyclist"},
+                                                          {256, "moving on-rails"},
+                                                          {257, "moving bus"},
+                                                          {258, "moving truck"},
+                                                          {259, "moving other vehicle"}};
   return names;
 }
 
@@ -95,7 +119,8 @@ std::string rangeTable(const std::vector<NamedEvaluation>& columns) {
       const auto& by_range = column.evaluation->byRange();
       const Counts counts = band < by_range.size() ? by_range[band] : Counts();
       moving = std::max(moving, counts.moving());
-      cells.push_back(fmt::format("{} / {} / {}", number(counts.iou()), number(counts.precision()), number(counts.recall())));
+      cells.push_back(
+          fmt::format("{} / {} / {}", number(counts.iou()), number(counts.precision()), number(counts.recall())));
     }
     const double from = kRangeBand * static_cast<double>(band);
     cells.insert(cells.begin(), {fmt::format("{} to {} m", from, from + kRangeBand), fmt::format("{}", moving)});

@@ -27,9 +27,7 @@ Eigen::Quaterniond stablyNormalised(const Eigen::Quaterniond& q) {
 
 }  // namespace
 
-Pose Pose::fromIsometry(const Eigen::Isometry3d& transform) {
-  return poseFromMatrix(transform.matrix().topRows<3>());
-}
+Pose Pose::fromIsometry(const Eigen::Isometry3d& transform) { return poseFromMatrix(transform.matrix().topRows<3>()); }
 
 Eigen::Isometry3d Pose::isometry() const {
   Eigen::Isometry3d transform = Eigen::Isometry3d::Identity();

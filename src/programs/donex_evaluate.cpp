@@ -28,7 +28,8 @@ struct Candidate {
     try {
       const auto prediction = readLabels(file);
       if (prediction.size() == echoes.size()) return evaluation.add(index, echoes, truth, prediction);
-      faults.add(fmt::format("{}: {} labels for {} echoes, not scored", file.string(), prediction.size(), echoes.size()));
+      faults.add(
+          fmt::format("{}: {} labels for {} echoes, not scored", file.string(), prediction.size(), echoes.size()));
     } catch (const DataError& error) {
       faults.add(std::string(error.what()) + ", not scored");
     }
@@ -62,7 +63,8 @@ void evaluate(const SequenceReader& sequence, std::size_t scans, std::vector<Can
 void run(const CLI::App& app, const Arguments& arguments) {
   const SequenceReader sequence(arguments.sequence);
   for (const std::string& note : sequence.notes()) warn(app, note);
-  if (!sequence.hasLabels()) throw DataError((sequence.directory() / "labels").string() + ": holds no labels to score by");
+  if (!sequence.hasLabels())
+    throw DataError((sequence.directory() / "labels").string() + ": holds no labels to score by");
   auto candidates = openCandidates(arguments.predictions);
   evaluate(sequence, arguments.frames == 0 ? sequence.size() : std::min(arguments.frames, sequence.size()), candidates);
   std::vector<NamedEvaluation> columns;

@@ -34,9 +34,7 @@ double cpuTime() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-double wallTime() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double wallTime() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 void judge(Detector& detector, const Scan& scan, EchoLabels& labels, Run& run) {
   const double wall = wallTime();

@@ -29,7 +29,8 @@ void run(const CLI::App& app, Arguments& arguments) {
 }  // namespace donex
 
 int main(int argc, char** argv) {
-  CLI::App app("Writes a sequence (SemanticKITTI layout) as a bag with clouds, odometry and tf.", "donex_sequence_to_bag");
+  CLI::App app("Writes a sequence (SemanticKITTI layout) as a bag with clouds, odometry and tf.",
+               "donex_sequence_to_bag");
   donex::Arguments arguments;
   app.add_option("SEQ_DIR", arguments.sequence, "velodyne/NNNNNN.bin, poses.txt, times.txt")->required();
   app.add_option("OUT.bag", arguments.file, "overwritten")->required();

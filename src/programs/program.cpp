@@ -1,14 +1,13 @@
 #include "program.h"
 
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <sstream>
 
 #include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include "donex/io/config_file.h"
 
@@ -54,9 +53,7 @@ int runProgram(CLI::App& app, int argc, char** argv, const std::function<void()>
   return parsed == kDone ? result : parsed;
 }
 
-void warn(const CLI::App& app, const std::string& text) {
-  fmt::print(stderr, "{}: {}\n", app.get_name(), text);
-}
+void warn(const CLI::App& app, const std::string& text) { fmt::print(stderr, "{}: {}\n", app.get_name(), text); }
 
 ConfigOptions::ConfigOptions(CLI::App& app) {
   app.add_option("--config", file_, "a file of parameters, as the node reads it");

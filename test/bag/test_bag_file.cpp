@@ -1,8 +1,7 @@
-#include "donex/bag/bag_file.h"
-
 #include <gtest/gtest.h>
 
 #include "bag/bags.h"
+#include "donex/bag/bag_file.h"
 
 namespace donex {
 namespace {
@@ -12,7 +11,8 @@ using test::TemporaryDirectory;
 
 void writeBag(const fs::path& file, rosbag::CompressionType compression) {
   BagWriter writer(file, compression);
-  for (std::uint32_t i = 1; i < 50; ++i) writer.bag().write("/text", ros::Time(i, 0), test::text(std::string(1000, 'a')));
+  for (std::uint32_t i = 1; i < 50; ++i)
+    writer.bag().write("/text", ros::Time(i, 0), test::text(std::string(1000, 'a')));
   writer.commit();
 }
 

@@ -82,7 +82,8 @@ void addOthers(rosbag::Bag& bag) {
 }
 
 TEST(LabelBag, KeepsEverythingElse) {
-  for (const auto compression : {rosbag::compression::Uncompressed, rosbag::compression::LZ4, rosbag::compression::BZ2}) {
+  for (const auto compression :
+       {rosbag::compression::Uncompressed, rosbag::compression::LZ4, rosbag::compression::BZ2}) {
     const TemporaryDirectory directory;
     const fs::path in = directory.path() / "in.bag", out = directory.path() / "out.bag";
     test::writeDriveBag(directory.path() / "drive", in, 8, {{}, compression});

@@ -85,7 +85,8 @@ TEST_F(LabelBagFaults, SeveralCandidates) {
 TEST_F(LabelBagFaults, NoSuchTopic) {
   LabelBagOptions options;
   options.points = "/front/points";
-  expectFault("has no topic /front/points (--points); its topics are:\n  /odom (nav_msgs/Odometry)\n  /points", options);
+  expectFault("has no topic /front/points (--points); its topics are:\n  /odom (nav_msgs/Odometry)\n  /points",
+              options);
 }
 
 TEST_F(LabelBagFaults, WrongType) {

@@ -1,8 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "support/temporary_directory.h"
-
 #include "donex/io/config_file.h"
+#include "support/temporary_directory.h"
 
 namespace donex {
 namespace {
@@ -56,7 +55,9 @@ TEST(ConfigFile, EmptyFileSetsNothing) {
 /// Writes every parameter as YAML text.
 struct Printer {
   std::string& text;
-  void line(const ParameterInfo& info, const std::string& value) { text += std::string(info.name) + ": " + value + "\n"; }
+  void line(const ParameterInfo& info, const std::string& value) {
+    text += std::string(info.name) + ": " + value + "\n";
+  }
   void operator()(const ParameterInfo& info, double& value, double, double) { line(info, std::to_string(value)); }
   void operator()(const ParameterInfo& info, int& value, int, int) { line(info, std::to_string(value)); }
   void operator()(const ParameterInfo& info, bool& value) { line(info, value ? "true" : "false"); }
@@ -157,9 +158,10 @@ TEST(Settings, FaultsAreNamedAtOnceAndChangeNothing) {
     FAIL() << "accepted";
   } catch (const SettingError& error) {
     const std::string message = error.what();
-    for (const char* part : {"'voxel_size=0': voxel_size is 0, must lie in", "'method': must be name=value",
-                             "'=3': must be name=value", "'nonsense=1': there is no parameter nonsense",
-                             "'markers=': markers is nothing", "'queue_size=[': is not YAML", "'x_max=-80': x_min is -50 and x_max is -80"}) {
+    for (const char* part :
+         {"'voxel_size=0': voxel_size is 0, must lie in", "'method': must be name=value", "'=3': must be name=value",
+          "'nonsense=1': there is no parameter nonsense", "'markers=': markers is nothing",
+          "'queue_size=[': is not YAML", "'x_max=-80': x_min is -50 and x_max is -80"}) {
       EXPECT_NE(message.find(part), std::string::npos) << part << " is not in\n" << message;
     }
   }

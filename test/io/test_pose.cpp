@@ -1,9 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "support/sequences.h"
-
 #include "donex/core/rigid_motion.h"
 #include "donex/io/pose.h"
+#include "support/sequences.h"
 
 namespace donex {
 namespace {

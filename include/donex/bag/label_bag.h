@@ -25,8 +25,8 @@ struct LabelBagSummary {
   std::size_t messages = 0;  ///< of the input
   std::size_t echoes = 0;
   PipelineCounts counts;
-  std::vector<double> times;           ///< parsing and judging, a labelled cloud [s]
-  std::vector<std::string> remarks;    ///< why something was dropped, refused or forgotten: each kind's first
+  std::vector<double> times;         ///< parsing and judging, a labelled cloud [s]
+  std::vector<std::string> remarks;  ///< why something was dropped, refused or forgotten: each kind's first
 };
 
 /// `progress` hears how many of how many messages are done.

@@ -24,7 +24,8 @@ Pose interpolate(const Pose& from, const Pose& to, double fraction);
 
 using PoseMatrix = Eigen::Matrix<double, 3, 4>;
 
-/// Why the 3x4 matrix is no rigid transform (non-finite, not orthonormal within 1e-3, mirrored); nothing when it is one.
+/// Why the 3x4 matrix is no rigid transform (non-finite, not orthonormal within 1e-3, mirrored); nothing when it is
+/// one.
 std::optional<std::string> faultOfPose(const PoseMatrix& matrix);
 
 /// Re-orthonormalised. The matrix must have no fault.

@@ -22,9 +22,9 @@ inline bool isScored(std::uint32_t label) { return classOfLabel(label) > 1; }
 
 /// One scan as the layout holds it: what it has beside the echoes is small.
 struct SequenceScan {
-  double stamp = 0.0;                    ///< [s], whole nanoseconds
-  std::vector<Eigen::Vector3f> echoes;   ///< sensor frame [m]; non-finite ones are kept
-  std::vector<float> intensities;        ///< one an echo
+  double stamp = 0.0;                   ///< [s], whole nanoseconds
+  std::vector<Eigen::Vector3f> echoes;  ///< sensor frame [m]; non-finite ones are kept
+  std::vector<float> intensities;       ///< one an echo
   Pose odom_from_sensor;
 };
 
