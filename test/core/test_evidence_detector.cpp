@@ -6,48 +6,21 @@
 
 #include <gtest/gtest.h>
 
-#include "donex/core/detector.h"
+#include "labelled_drives.h"
 #include "support/configs.h"
 #include "support/oracle.h"
-#include "support/simulated_drive.h"
 
 namespace donex {
 namespace {
 
+using testing::configOf;
+using testing::dynamicEchoes;
+using testing::expectSame;
+using testing::labelsOf;
 using testing::Score;
 using testing::simulatedDrive;
+using testing::street;
 using testing::TrueScan;
-
-Config configOf(Method method) {
-  Config config;
-  config.method = method;
-  return config;
-}
-
-std::vector<EchoLabels> labelsOf(Detector& detector, const std::vector<TrueScan>& drive) {
-  std::vector<EchoLabels> all(drive.size());
-  for (std::size_t k = 0; k < drive.size(); ++k) detector.process(drive[k].scan, all[k]);
-  return all;
-}
-
-std::vector<EchoLabels> labelsOf(const Config& config, const std::vector<TrueScan>& drive) {
-  return labelsOf(*makeDetector(config), drive);
-}
-
-std::size_t dynamicEchoes(const EchoLabels& labels) {
-  return static_cast<std::size_t>(std::count(labels.dynamic.begin(), labels.dynamic.end(), 1));
-}
-
-void expectSame(const std::vector<EchoLabels>& a, const std::vector<EchoLabels>& b) {
-  ASSERT_EQ(a.size(), b.size());
-  std::size_t dynamic = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) {
-    ASSERT_EQ(a[k].dynamic, b[k].dynamic) << "scan " << k;
-    ASSERT_EQ(a[k].observed, b[k].observed) << "scan " << k;
-    dynamic += dynamicEchoes(a[k]);
-  }
-  EXPECT_GT(dynamic, 50U) << "nothing to compare";
-}
 
 /// A few points below what was measured.
 struct Floor {
@@ -92,12 +65,6 @@ TEST_P(Labels, AreNearTheTruth) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Labels,
                          ::testing::Values(Floor{"intersection", 0.88, 0.89, 0.97}, Floor{"street", 0.94, 0.94, 0.97}));
-
-/// A short drive that several tests share.
-const std::vector<TrueScan>& street() {
-  static const std::vector<TrueScan> drive = simulatedDrive("street", 32, 12, 2);
-  return drive;
-}
 
 class BothGrids : public ::testing::TestWithParam<Method> {
  protected:
@@ -222,48 +189,6 @@ TEST_P(BothGrids, ObjectsHoldTheDynamicEchoes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Grids, BothGrids, ::testing::Values(Method::kDonex3d, Method::kDonex2d));
-
-/// Scans that a stream must not hold; the memory is as if they had never come.
-class Refusals : public ::testing::TestWithParam<std::pair<Method, bool>> {
- protected:
-  Config config() const {
-    return GetParam().second ? testing::paperConfig(GetParam().first) : configOf(GetParam().first);
-  }
-};
-
-TEST_P(Refusals, LeaveTheMemoryAsItWas) {
-  const std::vector<TrueScan>& drive = street();
-  const auto detector = makeDetector(config()), undisturbed = makeDetector(config());
-  std::vector<EchoLabels> labels(drive.size()), expected(drive.size());
-  for (std::size_t k = 0; k < drive.size(); ++k) {
-    detector->process(drive[k].scan, labels[k]);
-    undisturbed->process(drive[k].scan, expected[k]);
-    const auto refuses = [&](auto spoil) {
-      Scan bad = drive[k].scan;
-      bad.stamp += 0.05;
-      spoil(bad);
-      EchoLabels unused;
-      EXPECT_THROW(detector->process(bad, unused), std::invalid_argument);
-    };
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    refuses([&](Scan& s) { s.stamp = drive[k].scan.stamp; });
-    refuses([](Scan& s) { s.stamp -= 1.0; });
-    refuses([](Scan& s) { s.stamp = kNan; });
-    refuses([](Scan& s) { s.stamp = std::numeric_limits<double>::infinity(); });
-    refuses([](Scan& s) { s.odom_from_base.translation().y() = kNan; });
-    refuses([](Scan& s) { s.odom_from_base.translation().x() = 1e8; });
-    refuses([](Scan& s) { s.odom_from_base.linear()(0, 1) = kNan; });
-    refuses([](Scan& s) { s.odom_from_base.linear() *= 1.01; });
-    refuses([](Scan& s) { s.odom_from_base.linear().col(1) *= -1.0; });
-    refuses([](Scan& s) { s.base_from_sensor.linear().setZero(); });
-    refuses([](Scan& s) { s.base_from_sensor.translation().z() = kNan; });
-  }
-  expectSame(labels, expected);
-}
-
-INSTANTIATE_TEST_SUITE_P(Methods, Refusals,
-                         ::testing::Values(std::pair{Method::kDonex3d, false}, std::pair{Method::kDonex2d, false},
-                                           std::pair{Method::kDonex3d, true}, std::pair{Method::kDonex2d, true}));
 
 TEST(WithoutEvidence, ADriveIsLabelledAsThePaperSays) {
   const std::vector<TrueScan> drive = simulatedDrive("street", 16, 6, 8);
