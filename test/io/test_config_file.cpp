@@ -86,6 +86,13 @@ TEST(ConfigFile, EveryParameterCanBeGiven) {
   EXPECT_NE(printed(config), printed(Config()));
 }
 
+TEST(ConfigFile, TheFilesOfThePackageAreSound) {
+  const std::filesystem::path directory = DONEX_CONFIG_DIR;
+  EXPECT_EQ(printed(readConfigFile(directory / "default.yaml")), printed(Config()));
+  EXPECT_EQ(readConfigFile(directory / "paper_2d.yaml").method, Method::kDonex2d);
+  EXPECT_EQ(readConfigFile(directory / "paper_3d.yaml").method, Method::kDonex3d);
+}
+
 struct Bad {
   const char* text;
   const char* message;
