@@ -1,0 +1,113 @@
+// The fast grids against the oracle, and the default configuration's labels, on whole drives: real ones
+// where DONEX_SHARED_DATA names a folder of sequences, and always a simulated one.
+#include <cstdlib>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "donex/core/detector.h"
+#include "donex/io/evaluation.h"
+#include "donex/io/sequence.h"
+#include "donex/simulation/simulator.h"
+#include "support/configs.h"
+#include "support/oracle.h"
+
+namespace donex {
+namespace {
+
+struct LabelledScan {
+  Scan scan;
+  std::vector<std::uint32_t> labels;  ///< empty where there are none
+};
+
+/// Up to `most` scans of a sequence in the SemanticKITTI layout, or of a simulated scene.
+std::vector<LabelledScan> drive(const std::string& name, std::size_t most) {
+  std::vector<LabelledScan> scans;
+  if (std::filesystem::is_directory(name)) {
+    const SequenceReader reader(name);
+    for (std::size_t i = 0; i < std::min(most, reader.size()); ++i) {
+      scans.push_back({toScan(reader.scan(i)), {}});
+      if (reader.hasLabels(i)) scans.back().labels = reader.labels(i);
+    }
+    return scans;
+  }
+  simulation::Simulator simulator(name);
+  simulation::SimulatedScan scan;
+  while (scans.size() < most && simulator.next(scan)) scans.push_back({scan.coreScan(), scan.labels});
+  return scans;
+}
+
+std::vector<std::string> drives() {
+  std::vector<std::string> names{"street"};
+  const char* folder = std::getenv("DONEX_SHARED_DATA");
+  if (folder == nullptr || !std::filesystem::is_directory(folder)) return names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (std::filesystem::is_directory(entry.path() / "velodyne")) names.push_back(entry.path().string());
+  }
+  return names;
+}
+
+class Drives : public ::testing::TestWithParam<std::string> {};
+
+Scan thinned(const Scan& scan, std::size_t step) {
+  Scan thin = scan;
+  thin.echoes.clear();
+  for (std::size_t i = 0; i < scan.echoes.size(); i += step) thin.echoes.push_back(scan.echoes[i]);
+  return thin;
+}
+
+template <class Oracle>
+void expectOracleLabels(Method method, const std::vector<LabelledScan>& scans) {
+  for (const Compensation compensation : {Compensation::kScroll, Compensation::kResample}) {
+    Config config = testing::paperConfig(method);
+    config.compensation = compensation;
+    config.voxel_size = 0.4;
+    Oracle oracle(config);
+    const auto detector = makeDetector(config);
+    std::size_t dynamic = 0;
+    for (const LabelledScan& labelled : scans) {
+      const Scan scan = thinned(labelled.scan, 8);  // the oracle walks every line of sight
+      EchoLabels labels;
+      detector->process(scan, labels);
+      ASSERT_EQ(labels.dynamic, oracle.process(scan));
+      for (const std::uint8_t label : labels.dynamic) dynamic += label;
+    }
+    EXPECT_GT(dynamic, 0U);
+  }
+}
+
+TEST_P(Drives, Paper3dGivesTheOraclesLabels) {
+  expectOracleLabels<oracle::Donex3d>(Method::kDonex3d, drive(GetParam(), 4));
+}
+
+TEST_P(Drives, Paper2dGivesTheOraclesLabels) {
+  expectOracleLabels<oracle::Donex2d>(Method::kDonex2d, drive(GetParam(), 10));
+}
+
+TEST_P(Drives, TheDefaultConfigurationFindsWhatMoves) {
+  const auto scans = drive(GetParam(), 40);
+  for (const Method method : {Method::kDonex3d, Method::kDonex2d}) {
+    Config config;
+    config.method = method;
+    const auto detector = makeDetector(config);
+    Evaluation evaluation;
+    for (std::size_t k = 0; k < scans.size(); ++k) {
+      EchoLabels labels;
+      detector->process(scans[k].scan, labels);
+      if (scans[k].labels.empty() || !evaluation.scores(k)) continue;
+      std::vector<std::uint32_t> said(labels.dynamic.size());
+      for (std::size_t i = 0; i < said.size(); ++i) said[i] = labels.dynamic[i] != 0 ? kLabelMoving : kLabelStatic;
+      evaluation.add(k, scans[k].scan.echoes, scans[k].labels, said);
+    }
+    ASSERT_GT(evaluation.total().moving(), 1000U);
+    EXPECT_GT(evaluation.total().iou(), 0.93);
+    EXPECT_GT(evaluation.total().precision(), 0.98);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Drives, ::testing::ValuesIn(drives()), [](const auto& tested) {
+  return std::filesystem::path(tested.param).filename().string();
+});
+
+}  // namespace
+}  // namespace donex
