@@ -11,7 +11,7 @@
 
 namespace donex {
 
-/// What is scored (measurement.md of the project's notes: the rules all published figures here use).
+/// What is scored: the rules that all figures of this package's README follow.
 struct ScoringRules {
   std::size_t first_scan = 5;  ///< scans before are warm-up
   double max_range = 50.0;     ///< of the sensor in x, y [m]
