@@ -1,7 +1,7 @@
 // The classifier as a plain node.
-#include <ros/ros.h>
-
 #include "donex/ros/donex_node.h"
+
+#include <ros/ros.h>
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "donex");

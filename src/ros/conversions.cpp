@@ -32,9 +32,10 @@ double readDouble(const std::uint8_t* at, bool swap) { return read<double, std::
 
 /// A double beyond float's range becomes infinite: an echo that is kept and never dynamic.
 float toFloat(double value) {
-  constexpr double kMax = static_cast<double>(std::numeric_limits<float>::max());
-  if (std::abs(value) > kMax) return std::copysign(std::numeric_limits<float>::infinity(), static_cast<float>(value > 0.0 ? 1.0 : -1.0));
-  return static_cast<float>(value);
+  using Limits = std::numeric_limits<float>;
+  if (std::abs(value) <= static_cast<double>(Limits::max())) return static_cast<float>(value);
+  if (std::isnan(value)) return Limits::quiet_NaN();
+  return value > 0.0 ? Limits::infinity() : -Limits::infinity();
 }
 
 float readCoordinate(const std::uint8_t* point, FieldPosition field, bool swap) {
@@ -150,8 +151,7 @@ EchoTimes parseEchoTimes(const PointCloud2& cloud, const CloudLayout& layout, st
   return usable ? times : EchoTimes{};
 }
 
-sensor_msgs::PointCloud2Ptr labelCloud(const PointCloud2& cloud, const CloudLayout& layout,
-                                       const EchoLabels& labels) {
+sensor_msgs::PointCloud2Ptr labelCloud(const PointCloud2& cloud, const CloudLayout& layout, const EchoLabels& labels) {
   auto out = emptyLike(cloud, layout.width, layout.height, layout.labeled_point_step);
   addLabelField(*out, "dynamic", layout.dynamic_offset, layout.point_step);
   addLabelField(*out, "observed", layout.observed_offset, layout.point_step);

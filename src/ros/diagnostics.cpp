@@ -1,9 +1,10 @@
 #include "donex/ros/diagnostics.h"
 
-#include <unistd.h>
-
 #include <algorithm>
+#include <cmath>
 #include <fstream>
+
+#include <unistd.h>
 
 namespace donex {
 namespace {
@@ -24,14 +25,14 @@ double rateOf(const std::deque<Clock::time_point>& times) {
 }
 
 template <class Entries, class TimeOf>
-void forgetOld(Entries& entries, TimeOf timeOf) {
+void forgetOld(Entries& entries, const TimeOf& time_of) {
   const Clock::time_point horizon = Clock::now() - kWindow;
-  while (!entries.empty() && timeOf(entries.front()) < horizon) entries.pop_front();
+  while (!entries.empty() && time_of(entries.front()) < horizon) entries.pop_front();
 }
 
 double percentile(std::vector<double> values, double fraction) {
   if (values.empty()) return 0.0;
-  const auto rank = static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1) + 0.5);
+  const auto rank = std::lround(fraction * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + rank, values.end());
   return values[static_cast<std::size_t>(rank)];
 }

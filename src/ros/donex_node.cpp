@@ -18,9 +18,9 @@
 namespace donex {
 namespace {
 
-constexpr double kLogPeriod = 5.0;            // between messages of one kind [s]
-constexpr double kRetryPeriod = 0.01;         // waiting clouds are asked about this often at least [s]
-constexpr std::uint32_t kCloudQueue = 100;    // what comes while one scan is judged; the pipeline bounds and counts
+constexpr double kLogPeriod = 5.0;          // between messages of one kind [s]
+constexpr double kRetryPeriod = 0.01;       // waiting clouds are asked about this often at least [s]
+constexpr std::uint32_t kCloudQueue = 100;  // what comes while one scan is judged; the pipeline bounds and counts
 constexpr std::uint32_t kOdometryQueue = 1000;
 
 using sensor_msgs::PointCloud2;
@@ -79,7 +79,11 @@ class DonexNode::Implementation {
 };
 
 DonexNode::Implementation::Implementation(const ros::NodeHandle& nh, const ros::NodeHandle& pnh)
-    : nh_(nh), pnh_(pnh), config_(readParameters(pnh)), pipeline_(config_, tf_, events()), diagnostics_(nh, pnh, pipeline_) {
+    : nh_(nh),
+      pnh_(pnh),
+      config_(readParameters(pnh)),
+      pipeline_(config_, tf_, events()),
+      diagnostics_(nh, pnh, pipeline_) {
   // A sensor at rest asks tf nothing.
   const bool needs_tf = config_.motion.source != OdometrySource::kNone;
   if (needs_tf) tf_listener_ = std::make_unique<tf2_ros::TransformListener>(tf_, nh_);

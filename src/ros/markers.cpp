@@ -8,9 +8,8 @@ namespace {
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-constexpr double kArrowSeconds = 1.0;    // an arrow is as long as the way of this time
-constexpr double kSlowestArrow = 0.2;    // [m/s]; below, the direction is noise
-constexpr float kMagenta[] = {1.0F, 0.0F, 1.0F};
+constexpr double kArrowSeconds = 1.0;  // an arrow is as long as the way of this time
+constexpr double kSlowestArrow = 0.2;  // [m/s]; below, the direction is noise
 
 std_msgs::ColorRGBA colour(float r, float g, float b, float a) {
   std_msgs::ColorRGBA colour;
@@ -56,7 +55,7 @@ void addCells(const Detector& detector, double voxel_size, const std_msgs::Heade
   if (cells.empty()) return;  // an ADD without points is an error in rviz
   Marker marker = markerOf(header, "dynamic_cells", 0, Marker::CUBE_LIST);
   marker.scale.x = marker.scale.y = marker.scale.z = voxel_size;
-  marker.color = colour(kMagenta[0], kMagenta[1], kMagenta[2], 0.6F);
+  marker.color = colour(1.0F, 0.0F, 1.0F, 0.6F);
   marker.points.reserve(cells.size());
   for (const Eigen::Vector3f& cell : cells) marker.points.push_back(pointOf(cell.cast<double>()));
   array.markers.push_back(std::move(marker));

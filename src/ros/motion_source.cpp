@@ -120,9 +120,10 @@ OdometryVerdict MotionSource::add(const nav_msgs::Odometry& odometry) {
 
 OdometryVerdict MotionSource::addSample(const nav_msgs::Odometry& odometry, const OdometrySample& sample) {
   const bool frames_changed = adoptFrames(odometry);
-  const OdometryVerdict verdict = verdictOn(odometry_.add(sample), sample.stamp);
+  OdometryVerdict verdict = verdictOn(odometry_.add(sample), sample.stamp);
   if (!frames_changed) return verdict;
-  return {OdometryVerdict::Kind::kNewTrack, {}, textOf("odometry now moves '", base_frame_, "' in '", odom_frame_, "'")};
+  return {
+      OdometryVerdict::Kind::kNewTrack, {}, textOf("odometry now moves '", base_frame_, "' in '", odom_frame_, "'")};
 }
 
 std::variant<Eigen::Isometry3d, MotionMissing> MotionSource::lookup(const std::string& target,
@@ -175,6 +176,8 @@ MotionAnswer MotionSource::fromOdometry(const ScanTimes& times, const std::strin
 }
 
 MotionAnswer MotionSource::fromTf(const ScanTimes& times, const std::string& sensor_frame) {
+  // tf takes time zero for "the latest there is".
+  if (times.stamp.isZero()) return MotionMissing{DropReason::kNoTransform, "the cloud has no stamp", false};
   const auto mounting = lookup(frameName(config_.base_frame), sensor_frame, times.stamp);
   if (const auto* nothing = std::get_if<MotionMissing>(&mounting)) return *nothing;
   if (const auto nothing = trackFromTf(times)) return *nothing;
@@ -188,7 +191,8 @@ MotionAnswer MotionSource::fromTf(const ScanTimes& times, const std::string& sen
 
 std::optional<MotionMissing> MotionSource::trackFromTf(const ScanTimes& times) {
   std::vector<double> moments{0.0, times.last};
-  for (double moment = times.first; moment < times.last; moment += kTfStep) moments.push_back(moment);
+  const auto steps = static_cast<int>(std::ceil((times.last - times.first) / kTfStep));
+  for (int step = 0; step < steps; ++step) moments.push_back(times.first + step * kTfStep);
   std::sort(moments.begin(), moments.end());
   tf_track_.reset();
   for (const double moment : moments) {

@@ -57,9 +57,9 @@ class GroupedText {
     return groups_.emplace_back(group, std::ostringstream()).second;
   }
   std::string text(const std::string& before_title, const std::string& after_title) const {
-    std::string all;
-    for (const auto& [name, text] : groups_) all += "\n" + before_title + name + after_title + "\n" + text.str();
-    return all;
+    std::ostringstream all;
+    for (const auto& [name, text] : groups_) all << '\n' << before_title << name << after_title << '\n' << text.str();
+    return all.str();
   }
 
  private:
@@ -75,7 +75,9 @@ struct YamlWriter {
     const std::string unit = *info.unit == '\0' ? "" : std::string(" ") + info.unit;
     write(info, &value, textOf(value), textOf(min) + " to " + textOf(max) + unit);
   }
-  void operator()(const ParameterInfo& info, const bool& value) { write(info, &value, value ? "true" : "false", "true, false"); }
+  void operator()(const ParameterInfo& info, const bool& value) {
+    write(info, &value, value ? "true" : "false", "true, false");
+  }
   void operator()(const ParameterInfo& info, const std::string& value) { write(info, &value, quoted(value), "a name"); }
   template <class Enum, class = std::enable_if_t<std::is_enum_v<Enum>>>
   void operator()(const ParameterInfo& info, const Enum& value) {
@@ -107,7 +109,9 @@ struct CfgWriter {
   void operator()(const ParameterInfo& info, const bool& value) {
     write(info, &value, "bool_t", value ? "True" : "False", "");
   }
-  void operator()(const ParameterInfo& info, const std::string& value) { write(info, &value, "str_t", quoted(value), ""); }
+  void operator()(const ParameterInfo& info, const std::string& value) {
+    write(info, &value, "str_t", quoted(value), "");
+  }
   template <class Enum, class = std::enable_if_t<std::is_enum_v<Enum>>>
   void operator()(const ParameterInfo& info, const Enum& value) {
     if (!info.reconfigurable) return;
@@ -125,9 +129,9 @@ struct CfgWriter {
              const std::string& more) {
     if (!info.reconfigurable) return;
     const std::string unit = *info.unit == '\0' ? "" : std::string(" [") + info.unit + "]";
-    out.in(groupOf(config, member)) << "group.add(" << quoted(info.name) << ", " << type << ", " << levelOf(config, member)
-                                    << ",\n          " << description(info.meaning + unit) << ",\n          " << value
-                                    << more << ")\n";
+    out.in(groupOf(config, member)) << "group.add(" << quoted(info.name) << ", " << type << ", "
+                                    << levelOf(config, member) << ",\n          " << description(info.meaning + unit)
+                                    << ",\n          " << value << more << ")\n";
   }
 };
 
@@ -173,7 +177,8 @@ std::string paperYaml(Method method) {
   visitParameters(config, SwitchesOff{config, out});
   return "# The paper's method exactly; what is not named here is as in default.yaml. Written from the code by\n"
          "# donex_write_parameters: change it there.\n"
-         "method: " + nameOf(method) + "\ncompensation: resample\n\n# --- Steps beyond the paper ---\n" + out.str();
+         "method: " +
+         nameOf(method) + "\ncompensation: resample\n\n# --- Steps beyond the paper ---\n" + out.str();
 }
 
 std::string reconfigureCfg() {
@@ -183,7 +188,8 @@ std::string reconfigureCfg() {
   return "#!/usr/bin/env python3\n"
          "# The parameters that can be changed while running. Written from the code by donex_write_parameters:\n"
          "# change it there.\n"
-         "from dynamic_reconfigure.parameter_generator_catkin import ParameterGenerator, bool_t, double_t, int_t, str_t\n"
+         "from dynamic_reconfigure.parameter_generator_catkin import ParameterGenerator, bool_t, double_t, int_t, "
+         "str_t\n"
          "\n"
          "gen = ParameterGenerator()\n" +
          groups.text("group = gen.add_group(\"", "\")") + "\nexit(gen.generate(\"donex\", \"donex\", \"Donex\"))\n";

@@ -13,8 +13,8 @@
 namespace donex {
 namespace {
 
-using XmlRpc::XmlRpcValue;
 using dynamic_reconfigure::ConfigTools;
+using XmlRpc::XmlRpcValue;
 using Faults = std::vector<std::string>;
 
 const char* typeName(const XmlRpcValue& value) {
@@ -72,7 +72,8 @@ struct XmlRpcReader {
   }
   void operator()(const ParameterInfo& info, bool& out) {
     XmlRpcValue* value = find(info);
-    if (value != nullptr && expect(info, *value, XmlRpcValue::TypeBoolean, "a boolean")) out = static_cast<bool&>(*value);
+    if (value != nullptr && expect(info, *value, XmlRpcValue::TypeBoolean, "a boolean"))
+      out = static_cast<bool&>(*value);
   }
   void operator()(const ParameterInfo& info, std::string& out) {
     XmlRpcValue* value = find(info);
@@ -168,7 +169,8 @@ void addTo(Faults& faults, const Faults& more) { faults.insert(faults.end(), mor
 
 Faults applyParameters(const XmlRpcValue& values, Config& config) {
   if (!values.valid()) return config.faults();
-  if (values.getType() != XmlRpcValue::TypeStruct) return {std::string("the parameters are ") + typeName(values) + ", must be a map"};
+  if (values.getType() != XmlRpcValue::TypeStruct)
+    return {std::string("the parameters are ") + typeName(values) + ", must be a map"};
   XmlRpcValue copy = values;
   Faults faults;
   std::set<std::string> known{"diagnostic_period"};  // diagnostic_updater's own

@@ -37,7 +37,8 @@ void Pipeline::addCloud(const sensor_msgs::PointCloud2ConstPtr& cloud, double no
   const bool is_old = last_labeled_ && cloud->header.stamp < *last_labeled_;
   if (is_old) return suspect(std::move(waiting));
   if (suspect_cloud_) {
-    drop(DropReason::kOutOfOrder, cloudOf(suspect_cloud_->cloud->header.stamp) + " came after a later one was labelled");
+    drop(DropReason::kOutOfOrder,
+         cloudOf(suspect_cloud_->cloud->header.stamp) + " came after a later one was labelled");
     suspect_cloud_.reset();
   }
   place(std::move(waiting));
@@ -117,9 +118,8 @@ bool Pipeline::step(double now) {
   WaitingCloud& oldest = waiting_.front();
   oldest.arrival = std::min(oldest.arrival, now);  // a clock set back must not make it wait for ever
   const bool settle = now - oldest.arrival >= config_.motion.odometry_timeout;
-  const auto& header = oldest.cloud->header;
-  const auto answer = motion_.during({header.stamp, oldest.times.first, oldest.times.last}, header.frame_id, settle);
-  const auto* missing = std::get_if<MotionMissing>(&answer);
+  const MotionAnswer motion = motionOf(oldest, settle);
+  const auto* missing = std::get_if<MotionMissing>(&motion);
   if (missing != nullptr && missing->may_come && !settle) return false;
 
   const WaitingCloud waiting = std::move(oldest);
@@ -129,12 +129,22 @@ bool Pipeline::step(double now) {
     return true;
   }
   try {
-    label(waiting, std::get<ScanMotion>(answer));
+    label(waiting, std::get<ScanMotion>(motion));
     ++counts_.clouds_labeled;
   } catch (const std::exception& error) {
     drop(DropReason::kInternalError, error.what());
   }
   return true;
+}
+
+MotionAnswer Pipeline::motionOf(const WaitingCloud& waiting, bool settle) {
+  const auto& header = waiting.cloud->header;
+  try {
+    return motion_.during({header.stamp, waiting.times.first, waiting.times.last}, header.frame_id, settle);
+  } catch (const std::exception& error) {
+    // ros::Time throws where a time of the scan lies before 1970.
+    return MotionMissing{DropReason::kInternalError, error.what(), false};
+  }
 }
 
 void Pipeline::label(const WaitingCloud& waiting, const ScanMotion& motion) {
@@ -145,8 +155,8 @@ void Pipeline::label(const WaitingCloud& waiting, const ScanMotion& motion) {
   scan_.odom_from_base = motion.odom_from_base;
   parseEchoes(*waiting.cloud, waiting.layout, scan_.echoes);
   if (motion.track != nullptr) {
-    const MotionFault fault = deskew(*motion.track, scan_.stamp, scan_.base_from_sensor, waiting.times.after_stamp,
-                                     scan_.echoes);
+    const MotionFault fault =
+        deskew(*motion.track, scan_.stamp, scan_.base_from_sensor, waiting.times.after_stamp, scan_.echoes);
     if (fault != MotionFault::kNone) throw std::runtime_error(std::string("de-skewing: ") + describe(fault));
   }
   detector_->process(scan_, labels_);

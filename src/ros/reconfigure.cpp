@@ -1,5 +1,7 @@
 #include "donex/ros/reconfigure.h"
 
+#include <utility>
+
 #include <boost/thread/recursive_mutex.hpp>
 #include <donex/DonexConfig.h>
 #include <dynamic_reconfigure/server.h>
@@ -33,8 +35,8 @@ UnclampedConfig generatedFrom(const Config& config) {
 
 class Reconfigure::Server {
  public:
-  Server(const ros::NodeHandle& pnh, const Config& start, Accept accept)
-      : current_(start), accept_(std::move(accept)), server_(mutex_, pnh) {
+  Server(const ros::NodeHandle& pnh, Config start, Accept accept)
+      : current_(std::move(start)), accept_(std::move(accept)), server_(mutex_, pnh) {
     server_.updateConfig(generatedFrom(current_));
     server_.setCallback([this](UnclampedConfig& wanted, std::uint32_t) { change(wanted); });
   }

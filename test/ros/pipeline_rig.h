@@ -93,8 +93,8 @@ class PipelineRig {
   PipelineEvents events() {
     PipelineEvents events;
     events.labeled = [this](const LabeledScan& scan) {
-      labeled.push_back({scan.scan.stamp, scan.scan.odom_from_base, scan.scan.base_from_sensor, scan.scan.echoes,
-                         scan.labels});
+      labeled.push_back(
+          {scan.scan.stamp, scan.scan.odom_from_base, scan.scan.base_from_sensor, scan.scan.echoes, scan.labels});
     };
     events.dropped = [this](DropReason, const std::string& text) { drops.push_back(text); };
     events.refused = [this](OdometryRefusal, const std::string& text) { refusals.push_back(text); };

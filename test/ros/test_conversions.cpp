@@ -51,7 +51,8 @@ std::vector<Form> forms() {
   apart.fieldAt("x", PointField::FLOAT32, 1).fieldAt("y", PointField::FLOAT32, 9).fieldAt("z", PointField::FLOAT32, 17);
   return {
       {"plain", CloudBuilder().xyz(), 60, 1},
-      {"intensity and ring", CloudBuilder().xyz().field("intensity", PointField::FLOAT32).field("ring", PointField::UINT16), 60, 1},
+      {"intensity and ring",
+       CloudBuilder().xyz().field("intensity", PointField::FLOAT32).field("ring", PointField::UINT16), 60, 1},
       {"organised", CloudBuilder().xyz().padding(4), 15, 4},
       {"row padding", CloudBuilder().xyz().rowPadding(5), 15, 4},
       {"unaligned", CloudBuilder().padding(3).xyz().padding(2), 60, 1},
@@ -191,7 +192,8 @@ TEST(LabelCloud, keepsEveryByteAndAddsTheLabels) {
 }
 
 TEST(LabelCloud, overwritesEarlierLabels) {
-  auto cloud = CloudBuilder().xyz().field("dynamic", PointField::UINT8).field("observed", PointField::UINT8).size(60).build();
+  auto cloud =
+      CloudBuilder().xyz().field("dynamic", PointField::UINT8).field("observed", PointField::UINT8).size(60).build();
   const EchoLabels labels = randomLabels(60, 4);
   const auto out = labelCloud(*cloud, layoutOf(*cloud), labels);
   EXPECT_EQ(out->fields, cloud->fields);
@@ -215,7 +217,8 @@ TEST(SelectPart, thePartsDivideTheCloud) {
     EXPECT_EQ(moving->height, 1U);
     std::size_t next_moving = 0, next_still = 0;
     for (std::size_t i = 0; i < 60; ++i) {
-      const std::uint8_t* point = labels.dynamic[i] != 0 ? pointOf(*moving, next_moving++) : pointOf(*still, next_still++);
+      const std::uint8_t* point =
+          labels.dynamic[i] != 0 ? pointOf(*moving, next_moving++) : pointOf(*still, next_still++);
       ASSERT_EQ(std::memcmp(point, pointOf(*cloud, i), cloud->point_step), 0) << "echo " << i;
     }
     EXPECT_EQ(next_moving, moving->width);

@@ -72,8 +72,12 @@ TEST_F(Manager, labelsEveryCloudInItsFrame) {
 TEST_F(Manager, thePartsDivideTheCloudWhileSomebodyListens) {
   load();
   sensor_msgs::PointCloud2ConstPtr moving, still;
-  const boost::function<void(const sensor_msgs::PointCloud2ConstPtr&)> take_moving = [&](const auto& cloud) { moving = cloud; };
-  const boost::function<void(const sensor_msgs::PointCloud2ConstPtr&)> take_still = [&](const auto& cloud) { still = cloud; };
+  const boost::function<void(const sensor_msgs::PointCloud2ConstPtr&)> take_moving = [&](const auto& cloud) {
+    moving = cloud;
+  };
+  const boost::function<void(const sensor_msgs::PointCloud2ConstPtr&)> take_still = [&](const auto& cloud) {
+    still = cloud;
+  };
   auto a = nh_.subscribe<sensor_msgs::PointCloud2>("donex/dynamic_points", 5, take_moving);
   auto b = nh_.subscribe<sensor_msgs::PointCloud2>("donex/static_points", 5, take_still);
   ASSERT_TRUE(waitFor([&] { return a.getNumPublishers() == 1 && b.getNumPublishers() == 1; }));

@@ -100,7 +100,8 @@ TEST_F(Markers, theGridHasTwelveEdgesAlongItsAxes) {
   ASSERT_EQ(points.size(), 24U);
   double length = 0.0;
   for (std::size_t i = 0; i < points.size(); i += 2) {
-    const Eigen::Vector3d edge(points[i + 1].x - points[i].x, points[i + 1].y - points[i].y, points[i + 1].z - points[i].z);
+    const Eigen::Vector3d edge(points[i + 1].x - points[i].x, points[i + 1].y - points[i].y,
+                               points[i + 1].z - points[i].z);
     EXPECT_EQ((edge.array() != 0.0).count(), 1);
     length += edge.norm();
   }

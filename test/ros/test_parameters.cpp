@@ -19,9 +19,7 @@ std::string faultsOf(const XmlRpcValue& values) {
   return joined(applyParameters(values, config));
 }
 
-TEST(Parameters, emptyNamespaceIsTheDefault) {
-  EXPECT_EQ(faultsOf(XmlRpcValue()), "");
-}
+TEST(Parameters, emptyNamespaceIsTheDefault) { EXPECT_EQ(faultsOf(XmlRpcValue()), ""); }
 
 TEST(Parameters, goodValuesOfEveryType) {
   XmlRpcValue values;

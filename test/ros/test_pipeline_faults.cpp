@@ -56,6 +56,22 @@ TEST(PipelineFaults, emptyOneEchoAndAllNaN) {
   EXPECT_EQ(rig.labeled[4].labels.observed, std::vector<std::uint8_t>(50, 0));
 }
 
+TEST(PipelineFaults, stampsAtTheBeginningOfTime) {
+  for (const OdometrySource source : {OdometrySource::kTf, OdometrySource::kPose, OdometrySource::kTwist}) {
+    PipelineRig rig(test::smallConfig(source));
+    rig.tf.setTransform(test::transformAt(0.1, "odom", "base_link", 0.0), "test");
+    rig.odometry(0.1);
+    CloudBuilder early;
+    early.xyz().field("time", PointField::FLOAT32).size(2).stamp(0.01);
+    early.at(0, 1, 2, 3).set(0, "time", -0.5).at(1, 1, 2, 3).set(1, "time", 0.0);
+    rig.pipeline.addCloud(early.build(), 1.0);
+    rig.cloud(0.0, 1.0);
+    rig.pipeline.finish();
+    EXPECT_EQ(rig.drops.size(), 2U);
+    EXPECT_EQ(rig.pipeline.waiting(), 0U);
+  }
+}
+
 TEST(PipelineFaults, aDuplicateIsDropped) {
   PipelineRig rig;
   rig.cloud(100.0);

@@ -29,7 +29,7 @@ struct LayoutError {
 
 /// A number within a point.
 struct FieldPosition {
-  std::uint32_t offset = 0;  ///< [bytes] from the point's start
+  std::uint32_t offset = 0;   ///< [bytes] from the point's start
   std::uint8_t datatype = 0;  ///< sensor_msgs::PointField
 };
 

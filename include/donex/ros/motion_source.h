@@ -80,7 +80,7 @@ class MotionSource {
   MotionConfig config_;
   const tf2::BufferCore& tf_;
   EgoMotion odometry_;
-  EgoMotion tf_track_;  // of one scan
+  EgoMotion tf_track_;                   // of one scan
   std::string odom_frame_, base_frame_;  // of the odometry in use; empty before the first
 };
 

@@ -1,4 +1,5 @@
-// config/{default,paper_2d,paper_3d}.yaml and cfg/Donex.cfg are written from the code: the one place of names, defaults and ranges.
+// config/{default,paper_2d,paper_3d}.yaml and cfg/Donex.cfg are written from the code: the one place of names, defaults
+// and ranges.
 #pragma once
 
 #include <cstdint>

@@ -90,6 +90,7 @@ class Pipeline {
   void suspect(const nav_msgs::Odometry& odometry);
   void use(const nav_msgs::Odometry& odometry);
   void startAnew(const std::string& why);
+  MotionAnswer motionOf(const WaitingCloud& waiting, bool settle);
   void label(const WaitingCloud& waiting, const ScanMotion& motion);
   void refuse(OdometryRefusal refusal, const std::string& text);
   void drop(DropReason reason, const std::string& text);
@@ -106,7 +107,7 @@ class Pipeline {
   std::optional<WaitingCloud> suspect_cloud_;
   std::optional<nav_msgs::Odometry> suspect_odometry_;
 
-  Scan scan_;           // kept for their memory
+  Scan scan_;  // kept for their memory
   EchoLabels labels_;
 };
 
