@@ -115,7 +115,8 @@ void writeSequence(const CLI::App& app, const Arguments& arguments) {
     progress->advance();
   }
   progress.reset();
-  const double percent = 100.0 * static_cast<double>(count.moving) / static_cast<double>(std::max<std::size_t>(count.echoes, 1));
+  const double percent =
+      100.0 * static_cast<double>(count.moving) / static_cast<double>(std::max<std::size_t>(count.echoes, 1));
   fmt::print("{} scans, {} echoes, {:.2f} % of them moving\n", writer.size(), count.echoes, percent);
 }
 

@@ -1,9 +1,6 @@
-#include <sys/wait.h>
-
-#include <cstdio>
-
 #include <gtest/gtest.h>
 
+#include "programs/command.h"
 #include "support/sequences.h"
 #include "support/temporary_directory.h"
 
@@ -11,22 +8,8 @@ namespace donex {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Outcome {
-  int code = -1;
-  std::string text;  ///< stdout and stderr
-};
-
-Outcome runCommand(const std::string& command) {
-  Outcome outcome;
-  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  if (pipe == nullptr) return outcome;
-  char buffer[4096];
-  for (std::size_t n; (n = fread(buffer, 1, sizeof(buffer), pipe)) > 0;) outcome.text.append(buffer, n);
-  const int status = pclose(pipe);
-  if (WIFEXITED(status)) outcome.code = WEXITSTATUS(status);
-  return outcome;
-}
+using test::Outcome;
+using test::runCommand;
 
 /// Runs in a directory with a sound labelled sequence "seq" of eight scans.
 class Programs : public testing::Test {
@@ -116,7 +99,8 @@ TEST_F(Programs, EvaluateNeverGuesses) {
   fs::copy(path("seq/labels"), path("pred"));
   fs::resize_file(path("pred/000005.label"), 36);
   fs::remove(path("pred/000006.label"));
-  const Outcome outcome = expect(1, "pred/000005.label: 9 labels for 10 echoes, not scored", DONEX_EVALUATE, "seq pred");
+  const Outcome outcome =
+      expect(1, "pred/000005.label: 9 labels for 10 echoes, not scored", DONEX_EVALUATE, "seq pred");
   EXPECT_NE(outcome.text.find("pred/000006.label: No such file or directory, not scored"), std::string::npos)
       << outcome.text;
   EXPECT_NE(outcome.text.find("prediction"), std::string::npos) << "the scan that is whole is scored all the same";

@@ -1,0 +1,85 @@
+// donex_simulate: its exit codes, what it prints and writes.
+#include <gtest/gtest.h>
+
+#include "donex/io/sequence.h"
+#include "programs/command.h"
+#include "support/temporary_directory.h"
+
+namespace donex {
+namespace {
+
+using test::Outcome;
+
+class Simulate : public testing::Test {
+ protected:
+  std::filesystem::path path(const std::string& name) const { return directory_.path() / name; }
+
+  Outcome expect(int code, const std::vector<std::string>& parts, const std::string& arguments) {
+    Outcome outcome = test::runCommand("cd " + directory_.path().string() + " && " + DONEX_SIMULATE + " " + arguments);
+    EXPECT_EQ(outcome.code, code) << outcome.text;
+    for (const std::string& part : parts) {
+      EXPECT_NE(outcome.text.find(part), std::string::npos) << "'" << part << "' is not in\n" << outcome.text;
+    }
+    return outcome;
+  }
+
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(Simulate, WritesALabelledSequence) {
+  expect(0, {"6 scans", "moving"}, "intersection out --duration 0.6 --beams 16 --seed 4");
+  const SequenceReader reader(path("out"));
+  ASSERT_EQ(reader.size(), 6U);
+  EXPECT_NEAR(reader.stamp(5), 0.6, 1e-9);
+  std::size_t moving = 0;
+  for (std::size_t i = 0; i < reader.size(); ++i) {
+    const auto labels = reader.labels(i);
+    EXPECT_EQ(labels.size(), reader.echoes(i));
+    for (const std::uint32_t label : labels) moving += isMoving(label) ? 1 : 0;
+  }
+  EXPECT_GT(moving, 100U);
+  EXPECT_EQ(reader.pose(0).position, reader.pose(5).position) << "this sensor is at rest";
+}
+
+TEST_F(Simulate, WritesTruePosesOrTheOdometrys) {
+  const std::string drive = " --duration 1 --beams 16 --odometry-drift 0.1";
+  expect(0, {}, "street exact" + drive);
+  expect(0, {}, "street reported --poses odometry" + drive);
+  const SequenceReader exact(path("exact"));
+  const SequenceReader reported(path("reported"));
+  const auto wayOf = [](const SequenceReader& reader) {
+    return (reader.pose(9).position - reader.pose(0).position).norm();
+  };
+  EXPECT_NEAR(std::abs(wayOf(reported) / wayOf(exact) - 1.0), 0.1, 0.01);
+}
+
+TEST_F(Simulate, WritesABag) {
+  expect(0, {"5 clouds", "/points", "/odom"},
+         "street out.bag --duration 0.5 --beams 16 --distortion --compression lz4");
+  EXPECT_GT(std::filesystem::file_size(path("out.bag")), 100000U);
+}
+
+TEST_F(Simulate, WarnsThatASequenceCannotHoldTheTimes) {
+  expect(0, {"distortion"}, "street out --duration 0.2 --beams 16 --distortion");
+}
+
+TEST_F(Simulate, NamesEveryWrongArgumentAndWritesNothing) {
+  expect(2, {"moon", "empty_room", "beams", "dropout"}, "moon out --beams 5 --dropout 7");
+  expect(2, {"duration"}, "street out --duration 0");
+  expect(2, {"SCENE"}, "");
+  expect(2, {"poses"}, "street out --poses none");
+  EXPECT_FALSE(std::filesystem::exists(path("out")));
+}
+
+TEST_F(Simulate, FailsWhereItCannotWrite) {
+  expect(0, {}, "empty_room out --duration 0.2");
+  expect(1, {"out"}, "empty_room out --duration 0.2");
+  expect(1, {"nowhere"}, "empty_room nowhere/out.bag --duration 0.2");
+}
+
+TEST_F(Simulate, HelpNamesTheScenes) {
+  expect(0, {"intersection", "lead_vehicle", "empty_room", "--odometry-drift"}, "--help");
+}
+
+}  // namespace
+}  // namespace donex
