@@ -92,10 +92,30 @@ constexpr std::array<KnownTime, 4> kKnownTimes{{
     {"time", PointField::FLOAT32, TimeEncoding::kRelativeSeconds},
     {"t", PointField::UINT32, TimeEncoding::kRelativeNanoseconds},
     {"offset_time", PointField::UINT32, TimeEncoding::kRelativeNanoseconds},
-    {"timestamp", PointField::FLOAT64, TimeEncoding::kAbsolute},
+    {"timestamp", PointField::FLOAT64, TimeEncoding::kAuto},
 }};
 
-std::optional<TimeField> findTime(const PointCloud2& cloud) {
+/// The encoding that the known drivers use with a datatype.
+std::optional<TimeEncoding> usualEncoding(std::uint8_t datatype) {
+  switch (datatype) {
+    case PointField::FLOAT32: return TimeEncoding::kRelativeSeconds;
+    case PointField::UINT32: return TimeEncoding::kRelativeNanoseconds;
+    case PointField::FLOAT64: return TimeEncoding::kAuto;
+    default: return std::nullopt;
+  }
+}
+
+std::optional<TimeField> configuredTime(const PointCloud2& cloud, const CloudConfig& config) {
+  const PointField* field = findField(cloud, config.time_field);
+  if (field == nullptr || !fits(*field, cloud.point_step)) return std::nullopt;
+  const auto usual = usualEncoding(field->datatype);
+  if (!usual) return std::nullopt;
+  const bool is_told = config.time_encoding != TimeEncoding::kAuto;
+  return TimeField{{field->offset, field->datatype}, is_told ? config.time_encoding : *usual};
+}
+
+std::optional<TimeField> findTime(const PointCloud2& cloud, const CloudConfig& config) {
+  if (!config.time_field.empty()) return configuredTime(cloud, config);
   for (const KnownTime& known : kKnownTimes) {
     const PointField* field = findField(cloud, known.name);
     const bool usable = field != nullptr && field->datatype == known.datatype && fits(*field, cloud.point_step);
@@ -138,7 +158,7 @@ MaybeError placeLabels(const PointCloud2& cloud, CloudLayout& layout) {
 
 }  // namespace
 
-LayoutVerdict judgeLayout(const PointCloud2& cloud) {
+LayoutVerdict judgeLayout(const PointCloud2& cloud, const CloudConfig& config) {
   CloudLayout layout;
   layout.width = cloud.width;
   layout.height = cloud.height;
@@ -151,7 +171,7 @@ LayoutVerdict judgeLayout(const PointCloud2& cloud) {
   if (auto error = judgeCoordinate(cloud, "x", layout.x)) return *error;
   if (auto error = judgeCoordinate(cloud, "y", layout.y)) return *error;
   if (auto error = judgeCoordinate(cloud, "z", layout.z)) return *error;
-  layout.time = findTime(cloud);
+  layout.time = findTime(cloud, config);
   if (auto error = placeLabels(cloud, layout)) return *error;
   return layout;
 }

@@ -64,20 +64,38 @@ bool isPlain(const CloudLayout& layout) {
 /// Livox writes `timestamp` in nanoseconds, the others in seconds: no clock has seen 10^14 s.
 double absoluteSeconds(double timestamp) { return std::abs(timestamp) > 1e14 ? timestamp * 1e-9 : timestamp; }
 
-double timeAfterStamp(const std::uint8_t* point, const TimeField& time, double stamp, bool swap) {
-  const std::uint8_t* at = point + time.position.offset;
-  switch (time.encoding) {
-    case TimeEncoding::kRelativeSeconds: return static_cast<double>(readFloat(at, swap));
-    case TimeEncoding::kRelativeNanoseconds: return 1e-9 * read<std::uint32_t, std::uint32_t>(at, swap);
-    case TimeEncoding::kAbsolute: break;
+double readNumber(const std::uint8_t* at, std::uint8_t datatype, bool swap) {
+  switch (datatype) {
+    case PointField::FLOAT32: return static_cast<double>(readFloat(at, swap));
+    case PointField::UINT32: return read<std::uint32_t, std::uint32_t>(at, swap);
+    default: return readDouble(at, swap);
   }
-  return absoluteSeconds(readDouble(at, swap)) - stamp;
 }
 
-bool isFinite(const std::uint8_t* point, const CloudLayout& layout) {
+double timeAfterStamp(const std::uint8_t* point, const TimeField& time, double stamp, bool swap) {
+  const double value = readNumber(point + time.position.offset, time.position.datatype, swap);
+  switch (time.encoding) {
+    case TimeEncoding::kRelativeSeconds: return value;
+    case TimeEncoding::kRelativeMicroseconds: return 1e-6 * value;
+    case TimeEncoding::kRelativeNanoseconds: return 1e-9 * value;
+    case TimeEncoding::kAbsoluteSeconds: return value - stamp;
+    case TimeEncoding::kAbsoluteNanoseconds: return 1e-9 * value - stamp;
+    case TimeEncoding::kAuto: break;
+  }
+  return absoluteSeconds(value) - stamp;
+}
+
+/// Ouster's and Livox' drivers write 0, 0, 0 where nothing came back: the sensor sees no echo in itself.
+Eigen::Vector3f echoOf(const Eigen::Vector3f& position) {
+  const bool is_no_return = (position.array() == 0.0F).all();
+  return is_no_return ? Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()) : position;
+}
+
+bool isEcho(const std::uint8_t* point, const CloudLayout& layout) {
   const bool swap = layout.swap_bytes;
-  return std::isfinite(readCoordinate(point, layout.x, swap)) && std::isfinite(readCoordinate(point, layout.y, swap)) &&
-         std::isfinite(readCoordinate(point, layout.z, swap));
+  return echoOf({readCoordinate(point, layout.x, swap), readCoordinate(point, layout.y, swap),
+                 readCoordinate(point, layout.z, swap)})
+      .allFinite();
 }
 
 /// The header of an output with `width` x `height` points; its data still zero.
@@ -114,13 +132,14 @@ void parseEchoes(const PointCloud2& cloud, const CloudLayout& layout, std::vecto
   if (isPlain(layout)) {
     forEachPoint(cloud, layout, [&](std::size_t i, const std::uint8_t* point) {
       std::memcpy(echoes[i].data(), point + layout.x.offset, 3 * sizeof(float));
+      echoes[i] = echoOf(echoes[i]);
     });
     return;
   }
   const bool swap = layout.swap_bytes;
   forEachPoint(cloud, layout, [&](std::size_t i, const std::uint8_t* point) {
-    echoes[i] = {readCoordinate(point, layout.x, swap), readCoordinate(point, layout.y, swap),
-                 readCoordinate(point, layout.z, swap)};
+    echoes[i] = echoOf({readCoordinate(point, layout.x, swap), readCoordinate(point, layout.y, swap),
+                        readCoordinate(point, layout.z, swap)});
   });
 }
 
@@ -136,7 +155,7 @@ EchoTimes parseEchoTimes(const PointCloud2& cloud, const CloudLayout& layout, st
   forEachPoint(cloud, layout, [&](std::size_t i, const std::uint8_t* point) {
     const double time = timeAfterStamp(point, *layout.time, stamp, layout.swap_bytes);
     times.after_stamp[i] = toFloat(time);
-    if (!isFinite(point, layout)) return;
+    if (!isEcho(point, layout)) return;
     const bool plausible = std::abs(time) <= kMaxScanDuration;
     if (!plausible) strange = time;
     times.first = std::min(times.first, time);

@@ -155,6 +155,7 @@ std::string groupOf(const Config& config, const void* value) {
   if (isWithin(config.evidence, value)) return "Evidence";
   if (isWithin(config.objects, value)) return "Objects";
   if (isWithin(config.motion, value)) return "Motion";
+  if (isWithin(config.cloud, value)) return "Clouds";
   if (isWithin(config.node, value)) return "Node";
   return "Classifier";
 }

@@ -24,16 +24,12 @@ Pipeline::Pipeline(const Config& config, const tf2::BufferCore& tf, PipelineEven
 
 void Pipeline::addCloud(const sensor_msgs::PointCloud2ConstPtr& cloud, double now) {
   ++counts_.clouds_in;
-  const LayoutVerdict verdict = judgeLayout(*cloud);
+  const LayoutVerdict verdict = judgeLayout(*cloud, config_.cloud);
   if (const auto* error = std::get_if<LayoutError>(&verdict)) return drop(DropReason::kBadLayout, error->text);
 
   WaitingCloud waiting{cloud, std::get<CloudLayout>(verdict), {}, now, std::chrono::steady_clock::now()};
   const bool deskews = config_.motion.deskew && config_.motion.source != OdometrySource::kNone;
-  if (deskews) {
-    std::string problem;
-    waiting.times = parseEchoTimes(*cloud, waiting.layout, problem);
-    if (!problem.empty()) events_.strange_times(problem);
-  }
+  if (deskews) readTimes(waiting);
   const bool is_old = last_labeled_ && cloud->header.stamp < *last_labeled_;
   if (is_old) return suspect(std::move(waiting));
   if (suspect_cloud_) {
@@ -42,6 +38,15 @@ void Pipeline::addCloud(const sensor_msgs::PointCloud2ConstPtr& cloud, double no
     suspect_cloud_.reset();
   }
   place(std::move(waiting));
+}
+
+void Pipeline::readTimes(WaitingCloud& waiting) {
+  std::string problem;
+  waiting.times = parseEchoTimes(*waiting.cloud, waiting.layout, problem);
+  const std::string& wanted = config_.cloud.time_field;
+  const bool is_missing = !wanted.empty() && !waiting.layout.time;
+  if (is_missing) problem = "the cloud has no field '" + wanted + "' with times (FLOAT32, FLOAT64 or UINT32): not de-skewed";
+  if (!problem.empty()) events_.strange_times(problem);
 }
 
 void Pipeline::place(WaitingCloud cloud) {
@@ -159,10 +164,20 @@ void Pipeline::label(const WaitingCloud& waiting, const ScanMotion& motion) {
         deskew(*motion.track, scan_.stamp, scan_.base_from_sensor, waiting.times.after_stamp, scan_.echoes);
     if (fault != MotionFault::kNone) throw std::runtime_error(std::string("de-skewing: ") + describe(fault));
   }
+  moveToOrigin();
   detector_->process(scan_, labels_);
   last_labeled_ = stamp;
   events_.labeled({waiting.cloud, waiting.layout, scan_, labels_, *detector_, motion.odom_frame, waiting.received,
                    secondsSince(start)});
+}
+
+/// Lines of sight begin in the origin of the scan's frame: in a merged cloud that is not where the sensor is.
+void Pipeline::moveToOrigin() {
+  const Eigen::Vector3d origin(config_.cloud.origin_x, config_.cloud.origin_y, config_.cloud.origin_z);
+  if (origin.isZero(0.0)) return;
+  const Eigen::Vector3f shift = origin.cast<float>();
+  for (Eigen::Vector3f& echo : scan_.echoes) echo -= shift;
+  scan_.base_from_sensor.translate(origin);
 }
 
 void Pipeline::finish() {

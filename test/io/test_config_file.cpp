@@ -61,7 +61,7 @@ struct Printer {
   void operator()(const ParameterInfo& info, double& value, double, double) { line(info, std::to_string(value)); }
   void operator()(const ParameterInfo& info, int& value, int, int) { line(info, std::to_string(value)); }
   void operator()(const ParameterInfo& info, bool& value) { line(info, value ? "true" : "false"); }
-  void operator()(const ParameterInfo& info, std::string& value) { line(info, value); }
+  void operator()(const ParameterInfo& info, std::string& value) { line(info, '"' + value + '"'); }
   template <class Enum>
   std::enable_if_t<std::is_enum_v<Enum>> operator()(const ParameterInfo& info, Enum& value) {
     line(info, namesOf(value).at(static_cast<std::size_t>(value)));

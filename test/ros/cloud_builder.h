@@ -56,6 +56,10 @@ class CloudBuilder {
     step_ += bytes;
     return *this;
   }
+  CloudBuilder& pointStep(std::uint32_t bytes) {
+    step_ = bytes;
+    return *this;
+  }
   CloudBuilder& rowPadding(std::uint32_t bytes) {
     row_padding_ = bytes;
     return *this;

@@ -134,10 +134,29 @@ TEST(CloudLayout, timesByNameAndDatatype) {
   EXPECT_EQ(timeOf("time", PointField::FLOAT32)->encoding, TimeEncoding::kRelativeSeconds);
   EXPECT_EQ(timeOf("t", PointField::UINT32)->encoding, TimeEncoding::kRelativeNanoseconds);
   EXPECT_EQ(timeOf("offset_time", PointField::UINT32)->encoding, TimeEncoding::kRelativeNanoseconds);
-  EXPECT_EQ(timeOf("timestamp", PointField::FLOAT64)->encoding, TimeEncoding::kAbsolute);
+  EXPECT_EQ(timeOf("timestamp", PointField::FLOAT64)->encoding, TimeEncoding::kAuto);
   EXPECT_FALSE(timeOf("time", PointField::UINT32));
   EXPECT_FALSE(timeOf("t", PointField::FLOAT32));
   EXPECT_FALSE(timeOf("intensity", PointField::FLOAT32));
+}
+
+TEST(CloudLayout, timesOfAConfiguredField) {
+  const auto timeOf = [](std::uint8_t datatype, const CloudConfig& config) {
+    const auto cloud = CloudBuilder().xyz().field("stamp_of_echo", datatype).field("t", PointField::UINT32).size(2).build();
+    return std::get<CloudLayout>(judgeLayout(*cloud, config)).time;
+  };
+  CloudConfig config;
+  EXPECT_EQ(timeOf(PointField::FLOAT64, config)->position.datatype, PointField::UINT32) << "found by its name";
+  config.time_field = "stamp_of_echo";
+  EXPECT_EQ(timeOf(PointField::FLOAT32, config)->encoding, TimeEncoding::kRelativeSeconds);
+  EXPECT_EQ(timeOf(PointField::UINT32, config)->encoding, TimeEncoding::kRelativeNanoseconds);
+  EXPECT_EQ(timeOf(PointField::FLOAT64, config)->encoding, TimeEncoding::kAuto);
+  EXPECT_FALSE(timeOf(PointField::UINT16, config));
+  config.time_encoding = TimeEncoding::kRelativeMicroseconds;
+  EXPECT_EQ(timeOf(PointField::FLOAT64, config)->encoding, TimeEncoding::kRelativeMicroseconds);
+  EXPECT_EQ(timeOf(PointField::FLOAT64, config)->position.offset, 12U);
+  config.time_field = "not_there";
+  EXPECT_FALSE(timeOf(PointField::FLOAT64, config));
 }
 
 TEST(CloudLayout, labelsComeBehindThePoint) {

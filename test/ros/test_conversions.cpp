@@ -97,6 +97,12 @@ TEST(ParseEchoes, emptyAndOneEcho) {
   EXPECT_EQ(echoesOf(*CloudBuilder().xyz().size(1).at(0, 1, 2, 3).build()).size(), 1U);
 }
 
+TEST(ParseEchoes, nothingCameBack) {
+  const auto echoes = echoesOf(*CloudBuilder().xyz().size(2).at(0, 0, 0, 0).at(1, 0, 0, 1e-6).build());
+  EXPECT_TRUE(echoes[0].array().isNaN().all());
+  EXPECT_EQ(echoes[1], Eigen::Vector3f(0.0F, 0.0F, 1e-6F));
+}
+
 class EchoTime : public testing::Test {
  protected:
   EchoTimes timesOf(const PointCloud2& cloud) { return parseEchoTimes(cloud, layoutOf(cloud), problem_); }

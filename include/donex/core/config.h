@@ -10,6 +10,15 @@ namespace donex {
 enum class Method { kDonex3d, kDonex2d };
 enum class Compensation { kScroll, kResample };
 enum class OdometrySource { kPose, kTwist, kTf, kNone };
+/// How a cloud says when each echo was measured: relative to its stamp or absolute, in which unit.
+enum class TimeEncoding {
+  kAuto,
+  kRelativeSeconds,
+  kRelativeMicroseconds,
+  kRelativeNanoseconds,
+  kAbsoluteSeconds,
+  kAbsoluteNanoseconds,
+};
 
 inline const std::vector<std::string>& namesOf(Method) {
   static const std::vector<std::string> names{"donex_3d", "donex_2d"};
@@ -21,6 +30,11 @@ inline const std::vector<std::string>& namesOf(Compensation) {
 }
 inline const std::vector<std::string>& namesOf(OdometrySource) {
   static const std::vector<std::string> names{"pose", "twist", "tf", "none"};
+  return names;
+}
+inline const std::vector<std::string>& namesOf(TimeEncoding) {
+  static const std::vector<std::string> names{"auto",        "relative_s", "relative_us",
+                                              "relative_ns", "absolute_s", "absolute_ns"};
   return names;
 }
 
@@ -70,6 +84,13 @@ struct MotionConfig {
   bool deskew = true;
 };
 
+/// What a driver's clouds need to be told about where they cannot tell it themselves.
+struct CloudConfig {
+  std::string time_field;  // empty: found by its name
+  TimeEncoding time_encoding = TimeEncoding::kAuto;
+  double origin_x = 0.0, origin_y = 0.0, origin_z = 0.0;  // [m], the sensor in the clouds' frame
+};
+
 /// What the node does beside labelling.
 struct NodeConfig {
   int queue_size = 10;
@@ -88,6 +109,7 @@ struct Config {
   EvidenceConfig evidence;
   ObjectConfig objects;
   MotionConfig motion;
+  CloudConfig cloud;
   NodeConfig node;
 
   /// Every fault, a sentence each; empty when the configuration can be used.
@@ -153,6 +175,13 @@ void visitParameters(Config& config, Visitor&& visit) {
   visit(ParameterInfo{"max_extrapolation", "s", "how far beyond the newest odometry a pose may be extrapolated", false}, m.max_extrapolation, 0.0, 0.5);
   visit(ParameterInfo{"odometry_timeout", "s", "how long a cloud waits for odometry that covers its stamp", false}, m.odometry_timeout, 0.0, 10.0);
   visit(ParameterInfo{"deskew", "", "move each echo to the cloud's stamp by its own time, where the cloud carries one", false}, m.deskew);
+
+  CloudConfig& c = config.cloud;
+  visit(ParameterInfo{"time_field", "", "field of the clouds that holds each echo's own time; empty: time, t, offset_time or timestamp, whichever is there", false}, c.time_field);
+  visit(ParameterInfo{"time_encoding", "", "what time_field holds; auto: as the known drivers write it", false}, c.time_encoding);
+  visit(ParameterInfo{"origin_x", "m", "where the sensor sits in the frame of the clouds: lines of sight begin here; other than 0 only for clouds that were merged or transformed", false}, c.origin_x, -100.0, 100.0);
+  visit(ParameterInfo{"origin_y", "m", "as origin_x", false}, c.origin_y, -100.0, 100.0);
+  visit(ParameterInfo{"origin_z", "m", "as origin_x", false}, c.origin_z, -100.0, 100.0);
 
   NodeConfig& n = config.node;
   visit(ParameterInfo{"queue_size", "clouds", "clouds that may wait for odometry; the oldest is dropped beyond", false}, n.queue_size, 1, 1000);

@@ -9,6 +9,8 @@
 
 #include <sensor_msgs/PointCloud2.h>
 
+#include "donex/core/config.h"
+
 namespace donex {
 
 /// Why a cloud cannot be read.
@@ -33,16 +35,12 @@ struct FieldPosition {
   std::uint8_t datatype = 0;  ///< sensor_msgs::PointField
 };
 
-/// How drivers write an echo's own time.
-enum class TimeEncoding {
-  kRelativeSeconds,      ///< FLOAT32 `time` (Velodyne): after the cloud's stamp
-  kRelativeNanoseconds,  ///< UINT32 `t` (Ouster), `offset_time` (Livox): after the cloud's stamp
-  kAbsolute,             ///< FLOAT64 `timestamp` (Hesai, RoboSense: seconds; Livox: nanoseconds)
-};
-
+/// Where an echo's own time is. Without a configured field: FLOAT32 `time` (Velodyne: relative_s), UINT32 `t`
+/// (Ouster) and `offset_time` (Livox: relative_ns), FLOAT64 `timestamp` (Hesai, RoboSense: absolute, in seconds;
+/// Livox: absolute, in nanoseconds).
 struct TimeField {
   FieldPosition position;
-  TimeEncoding encoding = TimeEncoding::kRelativeSeconds;
+  TimeEncoding encoding = TimeEncoding::kAuto;  ///< kAuto: absolute, the unit told by its magnitude
 };
 
 /// A readable cloud: every offset below lies within the data, for every echo.
@@ -67,6 +65,6 @@ using LayoutVerdict = std::variant<CloudLayout, LayoutError>;
 
 /// Judges the whole layout; allocates nothing in proportion to what the cloud claims. A cloud without
 /// echoes is readable when its fields are (point_step and data do not matter then).
-LayoutVerdict judgeLayout(const sensor_msgs::PointCloud2& cloud);
+LayoutVerdict judgeLayout(const sensor_msgs::PointCloud2& cloud, const CloudConfig& config = {});
 
 }  // namespace donex

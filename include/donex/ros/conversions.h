@@ -11,7 +11,8 @@
 
 namespace donex {
 
-/// The echoes in the order of the cloud, row by row, in the cloud's frame [m]. Overwrites `echoes`.
+/// The echoes in the order of the cloud, row by row, in the cloud's frame [m]. Overwrites `echoes`. A point at
+/// exactly 0, 0, 0 is how drivers of organised clouds say that nothing came back: it becomes NaN.
 void parseEchoes(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout,
                  std::vector<Eigen::Vector3f>& echoes);
 

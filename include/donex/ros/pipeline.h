@@ -85,6 +85,7 @@ class Pipeline {
     std::chrono::steady_clock::time_point received;
   };
 
+  void readTimes(WaitingCloud& waiting);
   void place(WaitingCloud cloud);
   void suspect(WaitingCloud cloud);
   void suspect(const nav_msgs::Odometry& odometry);
@@ -92,6 +93,7 @@ class Pipeline {
   void startAnew(const std::string& why);
   MotionAnswer motionOf(const WaitingCloud& waiting, bool settle);
   void label(const WaitingCloud& waiting, const ScanMotion& motion);
+  void moveToOrigin();
   void refuse(OdometryRefusal refusal, const std::string& text);
   void drop(DropReason reason, const std::string& text);
 

@@ -1,0 +1,82 @@
+// The clouds of the common LiDARs' ROS 1 drivers, field by field as the drivers lay them out.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "ros/cloud_builder.h"
+
+namespace donex::test {
+
+struct DriverField {
+  const char* name;
+  std::uint8_t datatype;
+  std::uint32_t offset;
+};
+
+/// When the driver stamps its cloud.
+enum class StampedAt { kFirstEcho, kLastEcho };
+
+struct DriverCloud {
+  const char* driver;
+  std::vector<DriverField> fields;
+  std::uint32_t point_step;
+  std::uint32_t rows;  ///< 1: not organised
+  StampedAt stamped_at;
+  const char* time_field;
+  double units_per_second;  ///< of the time field
+  bool absolute;            ///< the time field counts from 1970
+  double no_return;         ///< x, y and z where nothing came back
+};
+
+inline const double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+
+inline const std::vector<DriverCloud>& driverClouds() {
+  using P = PointField;
+  static const std::vector<DriverCloud> clouds{
+      // velodyne_pointcloud 1.6 and later, organize_cloud false and true; stamped with the last packet.
+      {"velodyne", {{"x", P::FLOAT32, 0}, {"y", P::FLOAT32, 4}, {"z", P::FLOAT32, 8}, {"intensity", P::FLOAT32, 12},
+                    {"ring", P::UINT16, 16}, {"time", P::FLOAT32, 18}},
+       22, 1, StampedAt::kLastEcho, "time", 1.0, false, kNotANumber},
+      {"velodyne organised", {{"x", P::FLOAT32, 0}, {"y", P::FLOAT32, 4}, {"z", P::FLOAT32, 8},
+                              {"intensity", P::FLOAT32, 12}, {"ring", P::UINT16, 16}, {"time", P::FLOAT32, 18}},
+       22, 16, StampedAt::kLastEcho, "time", 1.0, false, kNotANumber},
+      // ouster_ros: PCL's alignment, ring as UINT8 (until 2022) and as UINT16.
+      {"ouster ring 8", {{"x", P::FLOAT32, 0}, {"y", P::FLOAT32, 4}, {"z", P::FLOAT32, 8},
+                         {"intensity", P::FLOAT32, 16}, {"t", P::UINT32, 20}, {"reflectivity", P::UINT16, 24},
+                         {"ring", P::UINT8, 26}, {"ambient", P::UINT16, 28}, {"range", P::UINT32, 32}},
+       48, 16, StampedAt::kFirstEcho, "t", 1e9, false, 0.0},
+      {"ouster", {{"x", P::FLOAT32, 0}, {"y", P::FLOAT32, 4}, {"z", P::FLOAT32, 8}, {"intensity", P::FLOAT32, 16},
+                  {"t", P::UINT32, 20}, {"reflectivity", P::UINT16, 24}, {"ring", P::UINT16, 26},
+                  {"ambient", P::UINT16, 28}, {"range", P::UINT32, 32}},
+       48, 16, StampedAt::kFirstEcho, "t", 1e9, false, 0.0},
+      // HesaiLidar_General_ROS: PCL's alignment; HesaiLidar_ROS_2.0: packed.
+      {"hesai general", {{"x", P::FLOAT32, 0}, {"y", P::FLOAT32, 4}, {"z", P::FLOAT32, 8},
+                         {"intensity", P::FLOAT32, 16}, {"timestamp", P::FLOAT64, 24}, {"ring", P::UINT16, 32}},
+       48, 1, StampedAt::kFirstEcho, "timestamp", 1.0, true, kNotANumber},
+      {"hesai 2.0", {{"x", P::FLOAT32, 0}, {"y", P::FLOAT32, 4}, {"z", P::FLOAT32, 8}, {"intensity", P::FLOAT32, 12},
+                     {"ring", P::UINT16, 16}, {"timestamp", P::FLOAT64, 18}},
+       26, 1, StampedAt::kFirstEcho, "timestamp", 1.0, true, kNotANumber},
+      // rslidar_sdk, POINT_TYPE XYZIRT: columns and rows exchanged, NaN kept unless dense_points.
+      {"robosense", {{"x", P::FLOAT32, 0}, {"y", P::FLOAT32, 4}, {"z", P::FLOAT32, 8}, {"intensity", P::FLOAT32, 12},
+                     {"ring", P::UINT16, 16}, {"timestamp", P::FLOAT64, 18}},
+       26, 40, StampedAt::kLastEcho, "timestamp", 1.0, true, kNotANumber},
+      // livox_ros_driver2, xfer_format 0: times in nanoseconds as a double.
+      {"livox", {{"x", P::FLOAT32, 0}, {"y", P::FLOAT32, 4}, {"z", P::FLOAT32, 8}, {"intensity", P::FLOAT32, 12},
+                 {"tag", P::UINT8, 16}, {"line", P::UINT8, 17}, {"timestamp", P::FLOAT64, 18}},
+       26, 1, StampedAt::kFirstEcho, "timestamp", 1e9, true, 0.0},
+  };
+  return clouds;
+}
+
+/// The driver's layout with `echoes` points (a multiple of its rows), every byte a pattern.
+inline CloudBuilder builderOf(const DriverCloud& driver, std::uint32_t echoes, double stamp) {
+  CloudBuilder builder;
+  builder.stamp(stamp);
+  for (const DriverField& field : driver.fields) builder.fieldAt(field.name, field.datatype, field.offset);
+  builder.pointStep(driver.point_step).size(echoes / driver.rows, driver.rows);
+  return builder;
+}
+
+}  // namespace donex::test
