@@ -21,6 +21,8 @@ struct SimulationFrames {
 /// truth as `label` (UINT32, see SimulatedScan::labels).
 sensor_msgs::PointCloud2Ptr toCloud(const simulation::SimulatedScan& scan, const SimulationFrames& frames);
 
+/// Throws std::runtime_error where a stamp lies before the epoch, which ros::Time cannot hold: odometry begins 0.1 s
+/// before the scene does.
 nav_msgs::OdometryPtr toOdometry(const OdometrySample& sample, const SimulationFrames& frames);
 
 /// odom -> base, as the odometry has it.
