@@ -53,6 +53,7 @@ class EvidenceDetector : public Detector {
     findGround();    // step 5
     judgePlaces();   // steps 1 to 4, asked of the scans before this one
     history_.add(scan, judged_.is_echo);
+    history_.askFrom(judged_.odom_from_points);
     labelPlaces(labels);
     if (config_.objects.enabled) labelObjects(labels);  // step 6
     dynamic_ = labels.dynamic;
@@ -72,6 +73,14 @@ class EvidenceDetector : public Detector {
   std::vector<Eigen::Vector3f> dynamicCells() const override {
     return cellCenters(newness_.window(), scan_, dynamic_);
   }
+
+  std::vector<EchoReason> reasons() const override {
+    std::vector<EchoReason> reasons(dynamic_.size());
+    for (std::size_t i = 0; i < reasons.size(); ++i) reasons[i] = reasonOf(i);
+    return reasons;
+  }
+
+  MemoryCells memoryCells() const override { return cellsOf(newness_); }
 
   GridOutline outline() const override { return newness_.window().outline(); }
 
@@ -135,7 +144,6 @@ class EvidenceDetector : public Detector {
   }
 
   void labelObjects(EchoLabels& labels) {
-    history_.askFrom(judged_.odom_from_points);  // the present scan has joined it
     finder_.find(judged_, candidates_);
     tracker_.update(judged_, history_, candidates_);
     finder_.release(judged_, candidates_);
@@ -144,6 +152,35 @@ class EvidenceDetector : public Detector {
       for (const std::uint32_t echo : candidate.echoes) labels.dynamic[echo] = labels.observed[echo] = 1;
     }
   }
+
+  EchoReason reasonOf(std::size_t i) const {
+    if (dynamic_[i] != 0) return EchoReason::kMoving;
+    if (judged_.is_echo[i] == 0) return EchoReason::kNoEcho;
+    if (scan_.inside[i] == 0) return EchoReason::kOutside;
+    if (judged_.standing[i] != Standing::kIn) return EchoReason::kGround;
+    switch (judged_.places[i]) {
+      case Place::kNew: return EchoReason::kNewAlone;
+      case Place::kSettled: return EchoReason::kSettled;
+      case Place::kUnobserved: break;
+    }
+    return EchoReason::kUnobserved;
+  }
+
+  /// De-shadowing is asked only where something is hit again; here it is asked of every voxel that is not hit.
+  MemoryCells cellsOf(const Newness3d& newness) const {
+    MemoryCells cells;
+    const auto size = static_cast<float>(newness.window().voxelSize());
+    newness.memory().forEach([&](const Index3& voxel, const VoxelRecord& record) {
+      if (record.last_hit == clock_.scan()) return;
+      const Eigen::Vector3f point = (voxel.cast<float>().array() + 0.5F) * size;
+      const bool settled = !clock_.isYoung(record.birth, record.was_free);
+      const double since = clock_.stampOf(record.last_hit);
+      auto& kind = wasFree(config_.evidence, history_, point, since, true, settled) ? cells.seen_through : cells.shadowed;
+      kind.push_back((judged_.odom_from_points * point.cast<double>()).cast<float>());
+    });
+    return cells;
+  }
+  MemoryCells cellsOf(const Newness2d&) const { return {}; }
 
   Config config_;
   StreamGuard guard_;

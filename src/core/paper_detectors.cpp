@@ -18,6 +18,7 @@ class PaperDetector : public Detector {
     grid_.shift(scan.odom_from_base);
     grid_.window().enter(scan, scan_);
     detectNew(labels);
+    if (watched_) before_ = rememberedCells();
     update();
     dynamic_ = labels.dynamic;
     is_first_ = false;
@@ -34,6 +35,24 @@ class PaperDetector : public Detector {
 
   std::vector<Eigen::Vector3f> dynamicCells() const override {
     return cellCenters(grid_.window(), scan_, dynamic_);
+  }
+
+  std::vector<EchoReason> reasons() const override {
+    std::vector<EchoReason> reasons(dynamic_.size(), EchoReason::kSettled);
+    for (std::size_t i = 0; i < reasons.size(); ++i) {
+      if (scan_.inside[i] == 0) {
+        reasons[i] = scan_.echoes[i].allFinite() ? EchoReason::kOutside : EchoReason::kNoEcho;
+      } else if (dynamic_[i] != 0) {
+        reasons[i] = EchoReason::kMoving;
+      }
+    }
+    return reasons;
+  }
+
+  MemoryCells memoryCells() const override;
+  void watch(bool watched) override {
+    watched_ = watched;
+    before_.clear();
   }
 
   GridOutline outline() const override { return grid_.window().outline(); }
@@ -55,6 +74,7 @@ class PaperDetector : public Detector {
   }
 
   bool isRemembered(const Eigen::Vector3f& echo) const;
+  std::vector<Index3> rememberedCells() const;
   void update();
 
   Grid grid_;
@@ -63,11 +83,33 @@ class PaperDetector : public Detector {
   std::vector<std::uint8_t> dynamic_;
   std::vector<Object> no_objects_;
   bool is_first_ = true;
+  bool watched_ = false;
+  std::vector<Index3> before_;  ///< remembered before the last scan, in its window; only while watched
 };
 
 template <>
 bool PaperDetector<Grid3d>::isRemembered(const Eigen::Vector3f& echo) const {
   return grid_.remembers(voxelOf(echo));
+}
+
+template <>
+std::vector<Index3> PaperDetector<Grid3d>::rememberedCells() const {
+  return grid_.remembered();
+}
+
+template <>
+MemoryCells PaperDetector<Grid3d>::memoryCells() const {
+  MemoryCells cells;
+  const GridWindow& window = grid_.window();
+  const auto inOdom = [&](const Index3& voxel) {
+    return Eigen::Vector3f((window.odomFromGrid() * window.indexToCenter(voxel)).cast<float>());
+  };
+  // Before the scan there were all of these: what was not forgotten was hit, or is in the shadow.
+  for (const Index3& voxel : before_) {
+    if (!grid_.remembers(voxel)) cells.seen_through.push_back(inOdom(voxel));
+    else if (!grid_.isHit(voxel)) cells.shadowed.push_back(inOdom(voxel));
+  }
+  return cells;
 }
 
 template <>
@@ -80,6 +122,16 @@ void PaperDetector<Grid3d>::update() {
 template <>
 bool PaperDetector<Grid2d>::isRemembered(const Eigen::Vector3f& echo) const {
   return grid_.remembers(echo);
+}
+
+template <>
+std::vector<Index3> PaperDetector<Grid2d>::rememberedCells() const {
+  return {};
+}
+
+template <>
+MemoryCells PaperDetector<Grid2d>::memoryCells() const {
+  return {};
 }
 
 template <>

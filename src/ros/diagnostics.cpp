@@ -46,45 +46,69 @@ double residentMegabytes() {
 
 }  // namespace
 
-Diagnostics::Diagnostics(const ros::NodeHandle& nh, const ros::NodeHandle& pnh, const Pipeline& pipeline)
-    : pipeline_(pipeline), updater_(nh, pnh, pnh.getNamespace()) {
+Diagnostics::Diagnostics(const ros::NodeHandle& nh, const ros::NodeHandle& pnh, const Pipeline& pipeline,
+                         bool needs_odometry)
+    : pipeline_(pipeline), updater_(nh, pnh, pnh.getNamespace()), needs_odometry_(needs_odometry) {
   updater_.setHardwareID("none");
   updater_.add("classifier", this, &Diagnostics::report);
 }
 
-void Diagnostics::cloudArrived() { arrivals_.push_back(Clock::now()); }
+void Diagnostics::cloudArrived(const ros::Time& stamp) {
+  last_cloud_ = Clock::now();
+  newest_cloud_ = stamp;
+  arrivals_.push_back(*last_cloud_);
+}
 
-void Diagnostics::odometryArrived() { odometry_arrivals_.push_back(Clock::now()); }
+void Diagnostics::odometryArrived(const ros::Time& stamp) {
+  last_odometry_ = Clock::now();
+  newest_odometry_ = stamp;
+  odometry_arrivals_.push_back(*last_odometry_);
+}
 
 void Diagnostics::scanPublished(const LabeledScan& scan) {
   const auto now = Clock::now();
   published_.push_back({now, scan.processing_time, seconds(now - scan.received)});
 }
 
+void Diagnostics::dropped(DropReason reason, const std::string& text) {
+  drops_.push_back(Clock::now());
+  last_reason_ = reason;
+  last_drop_ = text;
+}
+
 void Diagnostics::report(DiagnosticStatusWrapper& status) {
   const auto itself = [](const Clock::time_point& time) { return time; };
   forgetOld(arrivals_, itself);
   forgetOld(odometry_arrivals_, itself);
+  forgetOld(drops_, itself);
   forgetOld(published_, [](const Figures& figures) { return figures.published; });
-  summarise(status);
+  addLine(status);
   addFigures(status);
   addCounts(status);
-  drops_reported_ = pipeline_.counts().dropped.total();
   failures_reported_ = failures_;
 }
 
-void Diagnostics::summarise(DiagnosticStatusWrapper& status) const {
-  const std::size_t new_drops = pipeline_.counts().dropped.total() - drops_reported_;
-  if (failures_ != failures_reported_) {
-    status.summaryf(DiagnosticStatus::ERROR, "%s", last_failure_.c_str());
-  } else if (new_drops != 0) {
-    status.summaryf(DiagnosticStatus::WARN, "%zu scans dropped, the last one: %s", new_drops, last_drop_.c_str());
-  } else if (arrivals_.empty()) {
-    status.summary(DiagnosticStatus::WARN, "no clouds");
-  } else if (published_.empty()) {
-    status.summaryf(DiagnosticStatus::WARN, "clouds come, none is labelled yet, %zu wait", pipeline_.waiting());
-  } else {
-    status.summaryf(DiagnosticStatus::OK, "%.1f Hz, %.0f ms a scan", publishedRate(), 1e3 * medianProcessing());
+Health Diagnostics::health() const {
+  const auto now = Clock::now();
+  Health health;
+  health.labeled_rate = publishedRate();
+  health.median_time = medianProcessing();
+  if (last_cloud_) health.silent = seconds(now - *last_cloud_);
+  health.needs_odometry = needs_odometry_;
+  if (last_odometry_) health.odometry_age = seconds(now - *last_odometry_);
+  health.drops = drops_.size();
+  health.last_drop = describe(last_reason_);
+  health.waiting = pipeline_.waiting();
+  if (failures_ != failures_reported_) health.failure = last_failure_;
+  return health;
+}
+
+void Diagnostics::addLine(DiagnosticStatusWrapper& status) const {
+  const HealthLine line = tell(health());
+  switch (line.level) {
+    case HealthLine::Level::kOk: return status.summary(DiagnosticStatus::OK, line.text);
+    case HealthLine::Level::kWarn: return status.summary(DiagnosticStatus::WARN, line.text);
+    case HealthLine::Level::kError: return status.summary(DiagnosticStatus::ERROR, line.text);
   }
 }
 
@@ -109,6 +133,8 @@ void Diagnostics::addFigures(DiagnosticStatusWrapper& status) const {
   status.addf("clouds in [Hz]", "%.2f", rateOf(arrivals_));
   status.addf("clouds labelled [Hz]", "%.2f", publishedRate());
   status.addf("odometry in [Hz]", "%.2f", rateOf(odometry_arrivals_));
+  const bool both = last_cloud_ && last_odometry_;
+  status.addf("odometry behind the clouds [s]", "%.3f", both ? (newest_cloud_ - newest_odometry_).toSec() : 0.0);
   status.addf("time a scan, median [ms]", "%.2f", 1e3 * percentile(processing, 0.5));
   status.addf("time a scan, p99 [ms]", "%.2f", 1e3 * percentile(processing, 0.99));
   status.addf("latency in to out, median [ms]", "%.2f", 1e3 * percentile(latency, 0.5));
@@ -133,6 +159,7 @@ void Diagnostics::addCounts(DiagnosticStatusWrapper& status) const {
     status.add(std::string("odometry refused: ") + describe(refusal), counts.refused.of(refusal));
   }
   status.add("last drop", last_drop_);
+  status.add("last echo times not used", last_strange_times_);
   status.add("last odometry refused", last_refusal_);
   status.add("internal errors", failures_);
   status.add("last internal error", last_failure_);

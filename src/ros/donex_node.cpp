@@ -10,6 +10,7 @@
 #include <tf2_ros/transform_listener.h>
 
 #include "donex/ros/diagnostics.h"
+#include "donex/ros/explanation_clouds.h"
 #include "donex/ros/markers.h"
 #include "donex/ros/parameters.h"
 #include "donex/ros/pipeline.h"
@@ -24,6 +25,10 @@ constexpr std::uint32_t kCloudQueue = 100;  // what comes while one scan is judg
 constexpr std::uint32_t kOdometryQueue = 1000;
 
 using sensor_msgs::PointCloud2;
+
+bool usesOdometry(OdometrySource source) {
+  return source == OdometrySource::kPose || source == OdometrySource::kTwist;
+}
 
 /// A call to a function as an entry of a callback queue.
 class QueuedCall : public ros::CallbackInterface {
@@ -54,6 +59,9 @@ class DonexNode::Implementation {
   PipelineEvents events();
   void publish(const LabeledScan& scan);
   void publishMarkers(const LabeledScan& scan);
+  void publishExplanation(const LabeledScan& scan);
+  void publishCells(const LabeledScan& scan);
+  bool somebodyWatchesCells() const;
 
   /// A throw out of a callback would end the whole manager.
   template <class Function>
@@ -73,6 +81,7 @@ class DonexNode::Implementation {
   bool work_is_queued_ = false;
 
   ros::Publisher labeled_publisher_, dynamic_publisher_, static_publisher_, marker_publisher_;
+  ros::Publisher explained_publisher_, shadowed_publisher_, seen_through_publisher_;  // for the eye
   ros::ServiceServer reset_service_;
   ros::Subscriber cloud_subscriber_, odometry_subscriber_;
   ros::WallTimer retry_timer_, diagnostics_timer_;
@@ -83,7 +92,7 @@ DonexNode::Implementation::Implementation(const ros::NodeHandle& nh, const ros::
       pnh_(pnh),
       config_(readParameters(pnh)),
       pipeline_(config_, tf_, events()),
-      diagnostics_(nh, pnh, pipeline_) {
+      diagnostics_(nh, pnh, pipeline_, usesOdometry(config_.motion.source)) {
   // A sensor at rest asks tf nothing.
   const bool needs_tf = config_.motion.source != OdometrySource::kNone;
   if (needs_tf) tf_listener_ = std::make_unique<tf2_ros::TransformListener>(tf_, nh_);
@@ -92,6 +101,9 @@ DonexNode::Implementation::Implementation(const ros::NodeHandle& nh, const ros::
   dynamic_publisher_ = pnh_.advertise<PointCloud2>("dynamic_points", 5);
   static_publisher_ = pnh_.advertise<PointCloud2>("static_points", 5);
   marker_publisher_ = pnh_.advertise<visualization_msgs::MarkerArray>("markers", 5);
+  explained_publisher_ = pnh_.advertise<PointCloud2>("explained_points", 5);
+  shadowed_publisher_ = pnh_.advertise<PointCloud2>("shadowed_cells", 5);
+  seen_through_publisher_ = pnh_.advertise<PointCloud2>("seen_through_cells", 5);
   reset_service_ = pnh_.advertiseService("reset", &Implementation::onReset, this);
   reconfigure_ = std::make_unique<Reconfigure>(pnh_, config_, [this](const Config& config) { onChange(config); });
 
@@ -129,7 +141,7 @@ void DonexNode::Implementation::guarded(const char* where, Function&& function) 
 
 void DonexNode::Implementation::onCloud(const sensor_msgs::PointCloud2ConstPtr& cloud) {
   guarded("cloud", [&] {
-    diagnostics_.cloudArrived();
+    diagnostics_.cloudArrived(cloud->header.stamp);
     pipeline_.addCloud(cloud, ros::Time::now().toSec());
     schedule();
   });
@@ -137,7 +149,7 @@ void DonexNode::Implementation::onCloud(const sensor_msgs::PointCloud2ConstPtr& 
 
 void DonexNode::Implementation::onOdometry(const nav_msgs::OdometryConstPtr& odometry) {
   guarded("odometry", [&] {
-    diagnostics_.odometryArrived();
+    diagnostics_.odometryArrived(odometry->header.stamp);
     pipeline_.addOdometry(*odometry);
     if (pipeline_.waiting() != 0) schedule();
   });
@@ -168,6 +180,7 @@ void DonexNode::Implementation::schedule() {
 void DonexNode::Implementation::work() {
   work_is_queued_ = false;
   guarded("labelling", [this] {
+    pipeline_.watchCells(somebodyWatchesCells());
     if (pipeline_.step(ros::Time::now().toSec()) && pipeline_.waiting() != 0) schedule();
   });
 }
@@ -178,7 +191,7 @@ PipelineEvents DonexNode::Implementation::events() {
   events.dropped = [this](DropReason reason, const std::string& text) {
     const std::string full = std::string(describe(reason)) + ": " + text;
     ROS_WARN_STREAM_THROTTLE_NAMED(kLogPeriod, "donex", "cloud dropped, " << full);
-    diagnostics_.dropped(full);
+    diagnostics_.dropped(reason, full);
   };
   events.refused = [this](OdometryRefusal refusal, const std::string& text) {
     const std::string full = std::string(describe(refusal)) + ": " + text;
@@ -186,7 +199,10 @@ PipelineEvents DonexNode::Implementation::events() {
     diagnostics_.refused(full);
   };
   events.forgotten = [](const std::string& text) { ROS_WARN_STREAM_NAMED("donex", text); };
-  events.strange_times = [](const std::string& text) { ROS_WARN_STREAM_THROTTLE_NAMED(kLogPeriod, "donex", text); };
+  events.strange_times = [this](const std::string& text) {
+    ROS_WARN_STREAM_THROTTLE_NAMED(kLogPeriod, "donex", text);
+    diagnostics_.strangeTimes(text);
+  };
   return events;
 }
 
@@ -200,6 +216,24 @@ void DonexNode::Implementation::publish(const LabeledScan& scan) {
     static_publisher_.publish(selectPart(*scan.cloud, scan.layout, scan.labels, CloudPart::kStatic));
   }
   if (marker_publisher_.getNumSubscribers() != 0) publishMarkers(scan);
+  publishExplanation(scan);
+}
+
+void DonexNode::Implementation::publishExplanation(const LabeledScan& scan) {
+  if (explained_publisher_.getNumSubscribers() != 0) explained_publisher_.publish(explainScan(scan));
+  if (somebodyWatchesCells()) publishCells(scan);
+}
+
+bool DonexNode::Implementation::somebodyWatchesCells() const {
+  return shadowed_publisher_.getNumSubscribers() != 0 || seen_through_publisher_.getNumSubscribers() != 0;
+}
+
+void DonexNode::Implementation::publishCells(const LabeledScan& scan) {
+  std_msgs::Header header = scan.cloud->header;
+  header.frame_id = scan.odom_frame;
+  const MemoryCells cells = scan.detector.memoryCells();
+  shadowed_publisher_.publish(cellCloud(cells.shadowed, header));
+  seen_through_publisher_.publish(cellCloud(cells.seen_through, header));
 }
 
 void DonexNode::Implementation::publishMarkers(const LabeledScan& scan) {

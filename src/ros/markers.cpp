@@ -1,5 +1,8 @@
 #include "donex/ros/markers.h"
 
+#include <iomanip>
+#include <sstream>
+
 #include <boost/make_shared.hpp>
 
 namespace donex {
@@ -9,6 +12,7 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 constexpr double kArrowSeconds = 1.0;  // an arrow is as long as the way of this time
+constexpr double kTextHeight = 0.8;    // [m]
 constexpr double kSlowestArrow = 0.2;  // [m/s]; below, the direction is noise
 
 std_msgs::ColorRGBA colour(float r, float g, float b, float a) {
@@ -87,10 +91,24 @@ void addVelocity(const Object& object, const std_msgs::Header& header, MarkerArr
   array.markers.push_back(std::move(arrow));
 }
 
+void addSpeed(const Object& object, const std_msgs::Header& header, MarkerArray& array) {
+  if (!object.dynamic) return;
+  Marker text = markerOf(header, "speeds", static_cast<std::int32_t>(object.id), Marker::TEXT_VIEW_FACING);
+  const Eigen::Vector3d above(0.0, 0.0, 0.5 * object.size.z() + kTextHeight);
+  text.pose.position = pointOf(object.odom_from_box.translation() + above);
+  text.scale.x = text.scale.y = text.scale.z = kTextHeight;
+  text.color = colour(1.0F, 1.0F, 1.0F, 1.0F);
+  std::ostringstream words;
+  words << std::fixed << std::setprecision(1) << object.velocity.norm() << " m/s";
+  text.text = words.str();
+  array.markers.push_back(std::move(text));
+}
+
 void addObjects(const Detector& detector, const std_msgs::Header& header, MarkerArray& array) {
   for (const Object& object : detector.objects()) {
     addBox(object, header, array);
     addVelocity(object, header, array);
+    addSpeed(object, header, array);
   }
 }
 

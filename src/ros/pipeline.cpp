@@ -190,10 +190,19 @@ void Pipeline::finish() {
 
 void Pipeline::reset() { detector_->reset(); }
 
+void Pipeline::watchCells(bool watched) {
+  if (watched == watched_) return;
+  watched_ = watched;
+  detector_->watch(watched);
+}
+
 void Pipeline::configure(const Config& config) {
   const auto faults = config.faults();
   if (!faults.empty()) throw std::invalid_argument(joined(faults));
-  if (!sameDetection(config_, config)) detector_ = makeDetector(config);
+  if (!sameDetection(config_, config)) {
+    detector_ = makeDetector(config);
+    detector_->watch(watched_);
+  }
   const MotionConfig motion = config_.motion;
   config_ = config;
   config_.motion = motion;

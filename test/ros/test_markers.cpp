@@ -85,13 +85,21 @@ class Markers : public testing::Test {
 
 TEST_F(Markers, showEverything) {
   show();
-  EXPECT_EQ(screen_.namespaces(), (std::set<std::string>{"dynamic_cells", "grid", "objects", "velocities"}));
+  EXPECT_EQ(screen_.namespaces(), (std::set<std::string>{"dynamic_cells", "grid", "objects", "speeds", "velocities"}));
   const Marker& cells = screen_.shown.at({"dynamic_cells", 0});
   EXPECT_EQ(cells.type, Marker::CUBE_LIST);
   EXPECT_EQ(cells.points.size(), 2U);
   EXPECT_EQ(cells.scale.x, config_.voxel_size);
   EXPECT_EQ(screen_.shown.count({"objects", 7}), 1U);
   EXPECT_EQ(screen_.shown.count({"velocities", 7}), 0U) << "an arrow without a direction";
+}
+
+TEST_F(Markers, speedsAreWrittenAboveTheBoxes) {
+  detector_.objects_ = {objectOf(3, 8.34)};
+  show();
+  const Marker& speed = screen_.shown.at({"speeds", 3});
+  EXPECT_EQ(speed.text, "8.3 m/s");
+  EXPECT_GT(speed.pose.position.z, 0.5);
 }
 
 TEST_F(Markers, theGridHasTwelveEdgesAlongItsAxes) {
@@ -113,7 +121,7 @@ TEST_F(Markers, nothingStaleStays) {
   detector_.cells_.clear();
   detector_.objects_ = {objectOf(9, 2.0)};
   show();
-  EXPECT_EQ(screen_.namespaces(), (std::set<std::string>{"grid", "objects", "velocities"}));
+  EXPECT_EQ(screen_.namespaces(), (std::set<std::string>{"grid", "objects", "speeds", "velocities"}));
   EXPECT_EQ(screen_.shown.count({"objects", 4}), 0U);
   EXPECT_EQ(screen_.shown.count({"objects", 9}), 1U);
   detector_.objects_.clear();

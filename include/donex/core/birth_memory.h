@@ -35,6 +35,18 @@ class BirthMemory {
   /// Record of a voxel in the window, made where there is none. Valid until the next call.
   VoxelRecord& at(const Index3& in_window);
 
+  /// Calls visit(voxel in the window, record) for every voxel that is remembered.
+  template <class Visit>
+  void forEach(Visit&& visit) const {
+    for (const Brick& brick : bricks_) {
+      const Index3 corner = layout_.cornerOf(brick.slot);
+      for (int bit = 0; bit < 64; ++bit) {
+        const VoxelRecord& record = brick.records[static_cast<std::size_t>(bit)];
+        if (record.occupied()) visit(BrickLayout::voxelOfBit(corner, bit), record);
+      }
+    }
+  }
+
   void reset();
   const GridWindow& window() const { return window_; }
   std::size_t memoryBytes() const;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "donex/core/config.h"
+#include "donex/core/explanation.h"
 #include "donex/core/object.h"
 #include "donex/core/scan.h"
 
@@ -36,6 +37,14 @@ class Detector {
   /// Centres of the cells that hold a dynamic echo of the last scan, odometry frame [m].
   /// Computed on demand.
   virtual std::vector<Eigen::Vector3f> dynamicCells() const = 0;
+
+  /// One an echo of the last scan; empty where the method cannot tell. Computed on demand.
+  virtual std::vector<EchoReason> reasons() const { return {}; }
+
+  /// Cells of the 3D methods; empty for the others. Computed on demand, once watched, for scans since then.
+  virtual MemoryCells memoryCells() const { return {}; }
+  /// Somebody wants memoryCells() of the coming scans: only then is kept what it needs.
+  virtual void watch(bool) {}
 
   virtual GridOutline outline() const = 0;
 

@@ -24,6 +24,8 @@ class Grid3d {
   /// v in M': call before remember.
   bool remembers(const Index3& in_window) const { return remembered_.test(layout_.locate(in_window)); }
 
+  bool isHit(const Index3& in_window) const { return hit_.test(layout_.locate(in_window)); }
+
   /// Forgets what is remembered, not hit now, and crossed by a line of sight of the scan before its end.
   void deshadow(const GridScan& scan);
 

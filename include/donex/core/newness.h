@@ -49,6 +49,7 @@ class Newness3d {
               const SightHistory& history);
 
   void reset() { memory_.reset(); }
+  const BirthMemory& memory() const { return memory_; }
   const GridWindow& window() const { return memory_.window(); }
   std::size_t memoryBytes() const { return memory_.memoryBytes(); }
 

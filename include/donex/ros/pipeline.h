@@ -72,6 +72,9 @@ class Pipeline {
   /// motion are fixed at construction.
   void configure(const Config& config);
 
+  /// Whether somebody wants to see the cells of the coming scans (Detector::memoryCells).
+  void watchCells(bool watched);
+
   std::size_t waiting() const { return waiting_.size(); }
   const PipelineCounts& counts() const { return counts_; }
   const Detector& detector() const { return *detector_; }
@@ -101,6 +104,7 @@ class Pipeline {
   PipelineEvents events_;
   MotionSource motion_;
   std::unique_ptr<Detector> detector_;
+  bool watched_ = false;
   PipelineCounts counts_;
   std::deque<WaitingCloud> waiting_;  // by stamp
   std::optional<ros::Time> last_labeled_;

@@ -1,0 +1,58 @@
+#include "donex/ros/health.h"
+
+#include <cstdio>
+#include <vector>
+
+namespace donex {
+namespace {
+
+template <class... Values>
+std::string textOf(const char* format, Values... values) {
+  char text[160];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+void addSilence(const Health& health, std::vector<std::string>& problems) {
+  if (!health.silent) {
+    problems.emplace_back("no clouds yet");
+  } else if (*health.silent >= kSilence) {
+    problems.push_back(textOf("no clouds for %.1f s", *health.silent));
+  }
+}
+
+void addOdometry(const Health& health, std::vector<std::string>& problems) {
+  if (!health.needs_odometry) return;
+  if (!health.odometry_age) {
+    problems.emplace_back("no odometry yet");
+  } else if (*health.odometry_age >= kSilence) {
+    problems.push_back(textOf("odometry %.1f s old", *health.odometry_age));
+  }
+}
+
+void addDrops(const Health& health, std::vector<std::string>& problems) {
+  if (health.drops == 0) return;
+  const char* scans = health.drops == 1 ? "scan" : "scans";
+  problems.push_back(textOf("%zu %s dropped (%s)", health.drops, scans, health.last_drop.c_str()));
+}
+
+}  // namespace
+
+HealthLine tell(const Health& health) {
+  if (!health.failure.empty()) return {HealthLine::Level::kError, "ERROR: " + health.failure};
+  std::vector<std::string> problems;
+  addSilence(health, problems);
+  addOdometry(health, problems);
+  addDrops(health, problems);
+  const bool stuck = problems.empty() && health.labeled_rate <= 0.0;
+  if (stuck) problems.push_back(textOf("no scan labelled yet, %zu waiting", health.waiting));
+  if (problems.empty()) {
+    return {HealthLine::Level::kOk,
+            textOf("OK: %.1f Hz, %.0f ms a scan", health.labeled_rate, 1e3 * health.median_time)};
+  }
+  std::string text = "WARN: ";
+  for (const std::string& problem : problems) text += (&problem == &problems.front() ? "" : ", ") + problem;
+  return {HealthLine::Level::kWarn, text};
+}
+
+}  // namespace donex

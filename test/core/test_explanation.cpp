@@ -1,0 +1,105 @@
+// The reasons agree with the labels, and the cells shown are those of the memory.
+#include <cmath>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "donex/core/detector.h"
+#include "support/configs.h"
+#include "support/simulated_drive.h"
+
+namespace donex {
+namespace {
+
+using testing::TrueScan;
+
+Scan scanOf(double stamp, std::vector<Eigen::Vector3f> echoes) {
+  Scan scan;
+  scan.stamp = stamp;
+  scan.echoes = std::move(echoes);
+  return scan;
+}
+
+bool holds(const std::vector<Eigen::Vector3f>& centers, const Eigen::Vector3f& point, float voxel_size) {
+  for (const Eigen::Vector3f& center : centers) {
+    if (((center - point).array().abs() <= 0.5F * voxel_size + 1e-4F).all()) return true;
+  }
+  return false;
+}
+
+TEST(Explanation, paperCells) {
+  Config config = testing::paperConfig(Method::kDonex3d);
+  const auto detector = makeDetector(config);
+  const Eigen::Vector3f ahead(5.1F, 0.1F, 0.1F), aside(0.1F, 5.1F, 0.1F), behind(10.1F, 0.2F, 0.2F);
+  EchoLabels labels;
+  detector->process(scanOf(1.0, {ahead, aside}), labels);
+  EXPECT_TRUE(detector->memoryCells().shadowed.empty()) << "nobody watches";
+  detector->watch(true);
+  detector->process(scanOf(1.1, {behind}), labels);
+  const MemoryCells cells = detector->memoryCells();
+  ASSERT_EQ(cells.seen_through.size(), 1U);
+  ASSERT_EQ(cells.shadowed.size(), 1U);
+  const auto size = static_cast<float>(config.voxel_size);
+  EXPECT_TRUE(holds(cells.seen_through, ahead, size));
+  EXPECT_TRUE(holds(cells.shadowed, aside, size));
+  EXPECT_EQ(detector->reasons(), std::vector<EchoReason>{EchoReason::kMoving});
+  detector->process(scanOf(1.2, {behind, {70.0F, 0.0F, 0.0F}, {NAN, 0.0F, 0.0F}}), labels);
+  EXPECT_EQ(detector->reasons(),
+            (std::vector<EchoReason>{EchoReason::kSettled, EchoReason::kOutside, EchoReason::kNoEcho}));
+}
+
+/// What a reason says about the labels; the first scan knows nothing.
+void expectAgreement(EchoReason reason, bool dynamic, bool observed, const std::string& where) {
+  EXPECT_EQ(dynamic, reason == EchoReason::kMoving) << where << describe(reason);
+  const bool is_known = reason == EchoReason::kGround || reason == EchoReason::kSettled ||
+                        reason == EchoReason::kNewAlone || reason == EchoReason::kMoving;
+  EXPECT_EQ(observed, is_known) << where << describe(reason);
+}
+
+TEST(Explanation, reasonsAgreeWithTheLabels) {
+  const auto drive = testing::simulatedDrive("street", 32, 12, 3);
+  for (const Method method : {Method::kDonex3d, Method::kDonex2d}) {
+    Config config;
+    config.method = method;
+    const auto detector = makeDetector(config);
+    std::set<EchoReason> seen;
+    for (const TrueScan& scan : drive) {
+      EchoLabels labels;
+      detector->process(scan.scan, labels);
+      const auto reasons = detector->reasons();
+      ASSERT_EQ(reasons.size(), scan.scan.echoes.size());
+      if (&scan == &drive.front()) continue;
+      for (std::size_t i = 0; i < reasons.size(); ++i) {
+        expectAgreement(reasons[i], labels.dynamic[i] != 0, labels.observed[i] != 0, "echo " + std::to_string(i) + ": ");
+        seen.insert(reasons[i]);
+      }
+    }
+    EXPECT_GE(seen.size(), 5U) << "ground, unobserved, settled, outside and moving at least";
+  }
+}
+
+TEST(Explanation, cellsWithEvidenceAreThoseThatAreNotHit) {
+  const auto drive = testing::simulatedDrive("intersection", 32, 10, 3);
+  const Config config;
+  const auto detector = makeDetector(config);
+  EchoLabels labels;
+  for (const TrueScan& scan : drive) detector->process(scan.scan, labels);
+  const MemoryCells cells = detector->memoryCells();
+  EXPECT_GT(cells.shadowed.size(), 100U);
+  EXPECT_GT(cells.seen_through.size(), 10U) << "behind what moved";
+  // The first few shown cells hold no echo of the last scan.
+  const auto size = static_cast<float>(config.voxel_size);
+  const Scan& last = drive.back().scan;
+  for (const auto* kind : {&cells.shadowed, &cells.seen_through}) {
+    for (std::size_t i = 0; i < kind->size(); i += 50) {
+      for (const Eigen::Vector3f& echo : last.echoes) {
+        const Eigen::Vector3f in_odom = (last.odomFromSensor() * echo.cast<double>()).cast<float>();
+        const bool is_hit = ((in_odom - (*kind)[i]).array().abs() < 0.5F * size - 1e-3F).all();
+        ASSERT_FALSE(is_hit && std::abs(in_odom.z()) > 1.0F) << (*kind)[i].transpose();
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace donex
