@@ -38,23 +38,31 @@ void checkExtent(const char* axis, double min, double max, double voxel_size, st
   faults.push_back(text.str());
 }
 
-/// A slot of the grid's own memory [bytes]: two bit masks a brick, a brick's number, a cell with a range, or with three.
+/// A slot of the grid's own memory [bytes]: two or three bit masks a brick, a brick's number, a cell with a range, or
+/// with three; nothing where a method has no dense grid.
 double bytesASlot(const Config& config, bool is_paper) {
-  if (config.method == Method::kDonex3d) return is_paper ? 16.0 : 4.0;
-  return is_paper ? 16.0 : 40.0;
+  switch (config.method) {
+    case Method::kDonex3d: return is_paper ? 16.0 : 4.0;
+    case Method::kDonex2d: return is_paper ? 16.0 : 40.0;
+    case Method::kDonex3dZBuffer: return 16.0;
+    case Method::kPeopleremover: return 24.0;
+    default: return 0.0;
+  }
 }
 
 }  // namespace
 
 double Config::gridBytes() const {
-  const bool is_paper = !evidence.any() && !objects.enabled;
+  const bool has_evidence = method == Method::kDonex3d || method == Method::kDonex2d;
+  const bool is_paper = method == Method::kDonex3dZBuffer || (has_evidence && !evidence.any() && !objects.enabled);
   Config scrolling = *this;
   if (!is_paper) scrolling.compensation = Compensation::kScroll;
   const Eigen::Vector3d extent = GridWindow::extentOf(scrolling);
-  const double slots = method == Method::kDonex3d ? (extent / GridWindow::kBrick).prod() : extent.head<2>().prod();
+  const bool is_flat = method == Method::kDonex2d;
+  const double slots = is_flat ? extent.head<2>().prod() : (extent / GridWindow::kBrick).prod();
   // Clusters look at the ground plan in cells, and in cells of half the size.
   const double cells_along = extent.head<2>().maxCoeff() * voxel_size / objects.cell;
-  const double ground_plans = objects.enabled ? 5.0 * sizeof(int) * cells_along * cells_along : 0.0;
+  const double ground_plans = has_evidence && objects.enabled ? 5.0 * sizeof(int) * cells_along * cells_along : 0.0;
   return slots * bytesASlot(*this, is_paper) + ground_plans;
 }
 

@@ -2,24 +2,45 @@
 
 #include <stdexcept>
 
+#include "comparison_detectors.h"
+#include "donex/core/people_remover.h"
 #include "evidence_detector.h"
 #include "paper_detectors.h"
 
 namespace donex {
 
-std::unique_ptr<Detector> makeDetector(const Config& config) {
+void requireSound(const Config& config) {
   const std::vector<std::string> faults = config.faults();
-  if (!faults.empty()) {
-    std::string text = "configuration refused:";
-    for (const std::string& fault : faults) text += "\n  " + fault;
-    throw std::invalid_argument(text);
-  }
+  if (faults.empty()) return;
+  std::string text = "configuration refused:";
+  for (const std::string& fault : faults) text += "\n  " + fault;
+  throw std::invalid_argument(text);
+}
+
+std::unique_ptr<Detector> makeDetector(const Config& config) {
+  requireSound(config);
   const bool is_paper = !config.evidence.any() && !config.objects.enabled;
   switch (config.method) {
     case Method::kDonex2d: return is_paper ? makePaperDetector2d(config) : makeEvidenceDetector2d(config);
+    case Method::kDonex3dZBuffer: return makeZBufferDetector(config);
+    case Method::kMotionVoxelGrid: return makeMotionVoxelGridDetector(config);
+    case Method::kRayTracing: return makeRayTracingDetector(config);
+    case Method::kRangeResidual: return makeRangeResidualDetector(config);
+    case Method::kPeopleremover:
+      throw std::invalid_argument(
+          "method peopleremover judges a drive when all of it has been seen, it cannot run live: give the recording to "
+          "donex_bag, or a sequence to donex_sequence or donex_map");
     case Method::kDonex3d: break;
   }
   return is_paper ? makePaperDetector3d(config) : makeEvidenceDetector3d(config);
+}
+
+std::unique_ptr<WholeDriveDetector> makeWholeDriveDetector(const Config& config) {
+  requireSound(config);
+  if (!needsWholeDrive(config.method)) {
+    throw std::invalid_argument("method " + nameOf(config.method) + " runs live");
+  }
+  return makePeopleRemover(config, PeopleRemoverOptions());
 }
 
 }  // namespace donex

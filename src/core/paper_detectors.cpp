@@ -3,6 +3,7 @@
 #include "donex/core/grid_2d.h"
 #include "donex/core/grid_3d.h"
 #include "donex/core/stream_guard.h"
+#include "donex/core/z_buffer_grid.h"
 
 namespace donex {
 namespace {
@@ -120,6 +121,18 @@ void PaperDetector<Grid3d>::update() {
 }
 
 template <>
+bool PaperDetector<ZBufferGrid>::isRemembered(const Eigen::Vector3f& echo) const {
+  return grid_.remembers(voxelOf(echo));
+}
+
+template <>
+void PaperDetector<ZBufferGrid>::update() {
+  grid_.hit(scan_);
+  grid_.deshadow(scan_);
+  grid_.remember();
+}
+
+template <>
 bool PaperDetector<Grid2d>::isRemembered(const Eigen::Vector3f& echo) const {
   return grid_.remembers(echo);
 }
@@ -143,6 +156,9 @@ void PaperDetector<Grid2d>::update() {
 
 std::unique_ptr<Detector> makePaperDetector3d(const Config& config) {
   return std::make_unique<PaperDetector<Grid3d>>(config);
+}
+std::unique_ptr<Detector> makeZBufferDetector(const Config& config) {
+  return std::make_unique<PaperDetector<ZBufferGrid>>(config);
 }
 std::unique_ptr<Detector> makePaperDetector2d(const Config& config) {
   return std::make_unique<PaperDetector<Grid2d>>(config);

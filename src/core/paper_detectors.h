@@ -6,6 +6,7 @@
 namespace donex {
 
 std::unique_ptr<Detector> makePaperDetector3d(const Config& config);
+std::unique_ptr<Detector> makeZBufferDetector(const Config& config);
 std::unique_ptr<Detector> makePaperDetector2d(const Config& config);
 
 }  // namespace donex

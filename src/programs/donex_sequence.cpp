@@ -1,10 +1,9 @@
 // A SemanticKITTI-layout sequence through the detector: labels, time and score.
-#include <chrono>
-#include <ctime>
+#include <algorithm>
 
 #include <fmt/format.h>
 
-#include "donex/core/detector.h"
+#include "donex/io/drive_run.h"
 #include "donex/io/evaluation.h"
 #include "donex/io/sequence.h"
 #include "program.h"
@@ -23,34 +22,8 @@ struct Arguments {
 struct Run {
   std::size_t echoes = 0;
   std::size_t dynamic = 0;
-  std::vector<double> times;      ///< wall clock a scan [s]
-  std::vector<double> cpu_times;  ///< of all threads [s]
   Evaluation evaluation;
 };
-
-double cpuTime() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-double wallTime() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-void judge(Detector& detector, const Scan& scan, EchoLabels& labels, Run& run) {
-  const double wall = wallTime();
-  const double cpu = cpuTime();
-  detector.process(scan, labels);
-  run.cpu_times.push_back(cpuTime() - cpu);
-  run.times.push_back(wallTime() - wall);
-}
-
-std::vector<std::uint32_t> asSemanticKitti(const EchoLabels& labels) {
-  std::vector<std::uint32_t> result(labels.dynamic.size(), kLabelStatic);
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    if (labels.dynamic[i] != 0) result[i] = kLabelMoving;
-  }
-  return result;
-}
 
 /// Creates the directory of the predictions, unless that would overwrite the ground truth.
 void prepareOutput(const Arguments& arguments) {
@@ -64,32 +37,30 @@ void prepareOutput(const Arguments& arguments) {
   if (error) throw DataError(fmt::format("{}: cannot be created: {}", arguments.out, error.message()));
 }
 
-Run runSequence(const SequenceReader& sequence, std::size_t scans, Detector& detector, const std::string& out) {
+Run runSequence(const SequenceReader& sequence, std::size_t scans, DriveRun& drive, const std::string& out) {
   Run run;
-  EchoLabels labels;
-  ProgressBar progress(scans);
-  for (std::size_t i = 0; i < scans; ++i) {
-    const Scan scan = toScan(sequence.scan(i));
-    judge(detector, scan, labels, run);
+  ProgressBar progress(scans * drive.passes());
+  const auto take = [&](std::size_t i, const Scan& scan, const EchoLabels& labels) {
     const auto prediction = asSemanticKitti(labels);
     run.echoes += prediction.size();
     run.dynamic += static_cast<std::size_t>(std::count(prediction.begin(), prediction.end(), kLabelMoving));
     if (!out.empty()) writeLabels(fs::path(out) / (scanName(i) + ".label"), prediction);
     if (sequence.hasLabels(i)) run.evaluation.add(i, scan.echoes, sequence.labels(i), prediction);
-    progress.advance();
-  }
+  };
+  drive.run(sequence, scans, take, [&] { progress.advance(); });
   return run;
 }
 
-void report(const Run& run, const Config& config, const Detector& detector, bool has_labels) {
+void report(const Run& run, const Config& config, const DriveRun& drive, bool has_labels) {
   double seconds = 0.0;
-  for (const double time : run.times) seconds += time;
-  fmt::print("{} scans, {} echoes, {} dynamic; {}, {} m\n", run.times.size(), run.echoes, run.dynamic,
-             namesOf(config.method).at(static_cast<std::size_t>(config.method)), config.voxel_size);
-  fmt::print("time a scan: median {:.2f} ms, p99 {:.2f} ms (CPU: median {:.2f} ms)\n", 1e3 * quantile(run.times, 0.5),
-             1e3 * quantile(run.times, 0.99), 1e3 * quantile(run.cpu_times, 0.5));
+  for (const double time : drive.times()) seconds += time;
+  fmt::print("{} scans, {} echoes, {} dynamic; {}, {} m\n", drive.times().size(), run.echoes, run.dynamic,
+             nameOf(config.method), config.voxel_size);
+  fmt::print("time a scan: median {:.2f} ms, p99 {:.2f} ms (CPU: median {:.2f} ms)\n",
+             1e3 * quantile(drive.times(), 0.5), 1e3 * quantile(drive.times(), 0.99),
+             1e3 * quantile(drive.cpuTimes(), 0.5));
   fmt::print("echoes a second: {:.1f} million\n", 1e-6 * static_cast<double>(run.echoes) / seconds);
-  fmt::print("peak memory: {}, of it the grid's {}\n", megabytes(peakMemory()), megabytes(detector.memoryBytes()));
+  fmt::print("peak memory: {}, of it the grid's {}\n", megabytes(peakMemory()), megabytes(drive.memoryBytes()));
   if (run.evaluation.scans() > 0) {
     fmt::print("\n{}", formatEvaluations({{"this run", &run.evaluation}}));
   } else {
@@ -103,8 +74,9 @@ void run(const CLI::App& app, const Arguments& arguments, const ConfigOptions& o
   for (const std::string& note : sequence.notes()) warn(app, note);
   prepareOutput(arguments);
   const std::size_t scans = arguments.frames == 0 ? sequence.size() : std::min(arguments.frames, sequence.size());
-  const auto detector = makeDetector(config);
-  report(runSequence(sequence, scans, *detector, arguments.out), config, *detector, sequence.hasLabels());
+  DriveRun drive(config);
+  const Run run = runSequence(sequence, scans, drive, arguments.out);
+  report(run, config, drive, sequence.hasLabels());
 }
 
 }  // namespace

@@ -7,7 +7,16 @@
 
 namespace donex {
 
-enum class Method { kDonex3d, kDonex2d };
+/// DONEX in its forms, and the systems it is compared with (algorithm section 6).
+enum class Method {
+  kDonex3d,
+  kDonex2d,
+  kDonex3dZBuffer,
+  kMotionVoxelGrid,
+  kRayTracing,
+  kRangeResidual,
+  kPeopleremover,
+};
 enum class Compensation { kScroll, kResample };
 enum class OdometrySource { kPose, kTwist, kTf, kNone };
 /// How a cloud says when each echo was measured: relative to its stamp or absolute, in which unit.
@@ -21,9 +30,12 @@ enum class TimeEncoding {
 };
 
 inline const std::vector<std::string>& namesOf(Method) {
-  static const std::vector<std::string> names{"donex_3d", "donex_2d"};
+  static const std::vector<std::string> names{"donex_3d",    "donex_2d",       "donex_3d_zbuffer", "motion_voxel_grid",
+                                              "ray_tracing", "range_residual", "peopleremover"};
   return names;
 }
+inline const std::string& nameOf(Method method) { return namesOf(method).at(static_cast<std::size_t>(method)); }
+
 inline const std::vector<std::string>& namesOf(Compensation) {
   static const std::vector<std::string> names{"scroll", "resample"};
   return names;
@@ -133,7 +145,7 @@ struct ParameterInfo {
 ///   visit(info, std::string&)        visit(info, Enum&)  with namesOf(Enum) as its values.
 template <class Visitor>
 void visitParameters(Config& config, Visitor&& visit) {
-  visit(ParameterInfo{"method", "", "classifier", true}, config.method);
+  visit(ParameterInfo{"method", "", "classifier: DONEX, the paper's 3D rule with a z-buffer for its see-through, or a system it is compared with (peopleremover judges whole drives only, never live)", true}, config.method);
   visit(ParameterInfo{"voxel_size", "m", "edge length of a voxel", true}, config.voxel_size, 0.02, 2.0);
   Region& r = config.region;
   visit(ParameterInfo{"x_min", "m", "region of interest, vehicle frame, rear", true}, r.x_min, -500.0, 500.0);

@@ -52,8 +52,11 @@ class Detector {
   virtual std::size_t memoryBytes() const = 0;
 };
 
-/// Builds the method that `config.method` names. Throws std::invalid_argument that lists every
-/// fault of the configuration at once.
+/// Throws std::invalid_argument that lists every fault of the configuration at once.
+void requireSound(const Config& config);
+
+/// Builds the method that `config.method` names. Throws as requireSound does, and for a method that cannot run live
+/// (whole_drive.h).
 std::unique_ptr<Detector> makeDetector(const Config& config);
 
 }  // namespace donex

@@ -29,6 +29,19 @@ class Grid3d {
   /// Forgets what is remembered, not hit now, and crossed by a line of sight of the scan before its end.
   void deshadow(const GridScan& scan);
 
+  /// The same for another notion of see-through: `sees_through(voxel)`, asked of what is remembered and not hit now.
+  template <class Predicate>
+  void deshadowWhere(Predicate&& sees_through) {
+    remembered_.transform([&](std::uint32_t slot, std::uint64_t word) {
+      const Index3 corner = layout_.cornerOf(slot);
+      for (std::uint64_t candidates = word & ~hit_.word(slot); candidates != 0; candidates &= candidates - 1) {
+        const int bit = __builtin_ctzll(candidates);
+        if (sees_through(BrickLayout::voxelOfBit(corner, bit))) word &= ~(std::uint64_t{1} << bit);
+      }
+      return word;
+    });
+  }
+
   /// M_k = H_k u M'.
   void remember();
 

@@ -1,0 +1,36 @@
+// De-shadowing by a z-buffer instead of a traversal: the alternative that the paper set aside.
+#pragma once
+
+#include "donex/core/grid_3d.h"
+#include "donex/core/range_image.h"
+
+namespace donex {
+
+/// The 3D grid whose see-through is asked of a z-buffer (after Hu & Li 2012, as the paper cites them): the scan is
+/// rendered into an image of nearest ranges, and a remembered voxel is see-through where the image shows a surface
+/// behind it. One look-up a voxel; a pixel that holds a nearer echo, or none, hides what a single line of sight
+/// between two pixels' echoes would have seen.
+class ZBufferGrid : public Grid3d {
+ public:
+  explicit ZBufferGrid(const Config& config) : Grid3d(config) {}
+
+  /// Forgets what is remembered, not hit now, and nearer than the surface of its direction by more than the half
+  /// diagonal of a voxel.
+  void deshadow(const GridScan& scan) {
+    image_.clear();
+    for (const Eigen::Vector3f& echo : scan.echoes) image_.add(echo - scan.origin);
+    deshadowWhere([&](const Index3& voxel) {
+      const Eigen::Vector3f center = voxel.cast<float>() + Eigen::Vector3f::Constant(0.5F) - scan.origin;
+      return image_.rangeTowards(center) > center.norm() + kHalfDiagonal;
+    });
+  }
+
+  std::size_t memoryBytes() const { return Grid3d::memoryBytes() + image_.memoryBytes(); }
+
+ private:
+  static constexpr float kHalfDiagonal = 0.8660254F;  // of a voxel [voxels]
+
+  RangeImage image_;
+};
+
+}  // namespace donex
