@@ -88,18 +88,20 @@ class PaperDetector : public Detector {
   std::vector<Index3> before_;  ///< remembered before the last scan, in its window; only while watched
 };
 
-template <>
-bool PaperDetector<Grid3d>::isRemembered(const Eigen::Vector3f& echo) const {
+// The 3D grids; the 2D grid's own steps follow.
+
+template <class Grid>
+bool PaperDetector<Grid>::isRemembered(const Eigen::Vector3f& echo) const {
   return grid_.remembers(voxelOf(echo));
 }
 
-template <>
-std::vector<Index3> PaperDetector<Grid3d>::rememberedCells() const {
+template <class Grid>
+std::vector<Index3> PaperDetector<Grid>::rememberedCells() const {
   return grid_.remembered();
 }
 
-template <>
-MemoryCells PaperDetector<Grid3d>::memoryCells() const {
+template <class Grid>
+MemoryCells PaperDetector<Grid>::memoryCells() const {
   MemoryCells cells;
   const GridWindow& window = grid_.window();
   const auto inOdom = [&](const Index3& voxel) {
@@ -113,20 +115,8 @@ MemoryCells PaperDetector<Grid3d>::memoryCells() const {
   return cells;
 }
 
-template <>
-void PaperDetector<Grid3d>::update() {
-  grid_.hit(scan_);
-  grid_.deshadow(scan_);
-  grid_.remember();
-}
-
-template <>
-bool PaperDetector<ZBufferGrid>::isRemembered(const Eigen::Vector3f& echo) const {
-  return grid_.remembers(voxelOf(echo));
-}
-
-template <>
-void PaperDetector<ZBufferGrid>::update() {
+template <class Grid>
+void PaperDetector<Grid>::update() {
   grid_.hit(scan_);
   grid_.deshadow(scan_);
   grid_.remember();
