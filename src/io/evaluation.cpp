@@ -1,9 +1,11 @@
 #include "donex/io/evaluation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
+#include "donex/io/object_speeds.h"
 #include "donex/io/sequence.h"
 
 namespace donex {
@@ -28,8 +30,21 @@ double Counts::precision() const { return ratio(true_positives, true_positives +
 double Counts::recall() const { return ratio(true_positives, true_positives + false_negatives); }
 double Counts::falsePositiveRate() const { return ratio(false_positives, false_positives + true_negatives); }
 
+double ObjectCounts::recall() const { return ratio(found, all); }
+
+std::size_t speedBand(double speed) {
+  return static_cast<std::size_t>(std::upper_bound(kSpeedBandEnds.begin(), kSpeedBandEnds.end(), speed) -
+                                  kSpeedBandEnds.begin());
+}
+
 void Evaluation::add(std::size_t scan_index, const std::vector<Eigen::Vector3f>& echoes,
                      const std::vector<std::uint32_t>& truth, const std::vector<std::uint32_t>& prediction) {
+  add(scan_index, echoes, truth, prediction, [](std::uint32_t) { return std::nullopt; });
+}
+
+void Evaluation::add(std::size_t scan_index, const std::vector<Eigen::Vector3f>& echoes,
+                     const std::vector<std::uint32_t>& truth, const std::vector<std::uint32_t>& prediction,
+                     const SpeedOf& speedOf) {
   const bool fit = truth.size() == echoes.size() && prediction.size() == echoes.size();
   if (!fit) {
     throw std::invalid_argument(std::to_string(echoes.size()) + " echoes, " + std::to_string(truth.size()) +
@@ -37,10 +52,29 @@ void Evaluation::add(std::size_t scan_index, const std::vector<Eigen::Vector3f>&
   }
   if (!scores(scan_index)) return;
   ++scans_;
+  std::map<std::uint32_t, Counts> instances;  // by label
   for (std::size_t i = 0; i < echoes.size(); ++i) {
     const double range = echoes[i].head<2>().cast<double>().norm();
     const bool in_range = range <= rules_.max_range;  // not so for NaN
-    if (in_range && isScored(truth[i])) addEcho(range, truth[i], isMoving(prediction[i]));
+    if (!in_range || !isScored(truth[i])) continue;
+    addEcho(range, truth[i], isMoving(prediction[i]));
+    const bool is_object = isMoving(truth[i]) && instanceOfLabel(truth[i]) != 0;
+    if (is_object) instances[truth[i]].add(true, isMoving(prediction[i]));
+  }
+  for (const auto& [label, counts] : instances) addObject(label, counts, speedOf(instanceOfLabel(label)));
+}
+
+void Evaluation::addObject(std::uint32_t truth, const Counts& counts, const std::optional<double>& speed) {
+  if (speed) {
+    Counts& band = by_speed_[speedBand(*speed)];
+    band.true_positives += counts.true_positives;
+    band.false_negatives += counts.false_negatives;
+  }
+  if (counts.moving() < ObjectCounts::kLeastEchoes) return;
+  const bool is_found = 2 * counts.true_positives >= counts.moving();
+  for (ObjectCounts* objects : {&objects_, &objects_by_class_[classOfLabel(truth)]}) {
+    ++objects->all;
+    objects->found += is_found ? 1 : 0;
   }
 }
 

@@ -65,13 +65,24 @@ std::string formatRows(const std::vector<std::vector<std::string>>& rows) {
   return text;
 }
 
+/// What a prediction took, where that is known.
+std::vector<std::string> figuresOf(const NamedEvaluation& column) {
+  if (!column.figures) return {"-", "-", "-"};
+  const RunFigures& figures = *column.figures;
+  return {fmt::format("{:.1f} ms", 1e3 * figures.median_time), fmt::format("{:.1f} ms", 1e3 * figures.mean_cpu_time),
+          fmt::format("{:.0f} MB", 1e-6 * static_cast<double>(figures.peak_memory))};
+}
+
 std::string overallTable(const std::vector<NamedEvaluation>& columns) {
-  std::vector<std::vector<std::string>> rows{{"prediction", "IoU", "P", "R", "scans", "echoes", "moving"}};
+  std::vector<std::vector<std::string>> rows{
+      {"prediction", "IoU", "P", "R", "scans", "echoes", "moving", "objects", "a scan", "CPU", "memory"}};
   for (const auto& column : columns) {
     const Counts& total = column.evaluation->total();
+    const ObjectCounts& objects = column.evaluation->objects();
     rows.push_back({column.name, number(total.iou()), number(total.precision()), number(total.recall()),
                     fmt::format("{}", column.evaluation->scans()), fmt::format("{}", total.total()),
-                    fmt::format("{}", total.moving())});
+                    fmt::format("{}", total.moving()), fmt::format("{} of {}", objects.found, objects.all)});
+    for (const std::string& figure : figuresOf(column)) rows.back().push_back(figure);
   }
   return formatRows(rows);
 }
@@ -130,7 +141,31 @@ std::string rangeTable(const std::vector<NamedEvaluation>& columns) {
   return formatRows(rows);
 }
 
+/// Recall of moving instances by their speed; nothing where the labels have none.
+std::string speedTable(const std::vector<NamedEvaluation>& columns) {
+  std::vector<std::vector<std::string>> rows{header("recall of moving instances, by speed", columns)};
+  for (std::size_t band = 0; band <= kSpeedBandEnds.size(); ++band) {
+    std::uint64_t moving = 0;
+    std::vector<std::string> cells;
+    for (const auto& column : columns) {
+      const Counts& counts = column.evaluation->bySpeed()[band];
+      moving = std::max(moving, counts.moving());
+      cells.push_back(number(counts.recall()));
+    }
+    if (moving == 0) continue;
+    cells.insert(cells.begin(), {speedBandName(band), fmt::format("{}", moving)});
+    rows.push_back(cells);
+  }
+  return rows.size() == 1 ? "" : '\n' + formatRows(rows);
+}
+
 }  // namespace
+
+std::string speedBandName(std::size_t band) {
+  if (band == 0) return fmt::format("below {} m/s", kSpeedBandEnds.front());
+  if (band == kSpeedBandEnds.size()) return fmt::format("{} m/s and more", kSpeedBandEnds.back());
+  return fmt::format("{} to {} m/s", kSpeedBandEnds[band - 1], kSpeedBandEnds[band]);
+}
 
 std::string className(std::uint32_t label) {
   const auto found = classNames().find(classOfLabel(label));
@@ -138,7 +173,7 @@ std::string className(std::uint32_t label) {
 }
 
 std::string formatEvaluations(const std::vector<NamedEvaluation>& columns) {
-  return overallTable(columns) + '\n' + classTable(columns) + '\n' + rangeTable(columns);
+  return overallTable(columns) + '\n' + classTable(columns) + '\n' + rangeTable(columns) + speedTable(columns);
 }
 
 }  // namespace donex

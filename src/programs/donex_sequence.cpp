@@ -3,8 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "donex/io/drive_run.h"
-#include "donex/io/evaluation.h"
+#include "donex/io/comparison.h"
 #include "donex/io/sequence.h"
 #include "program.h"
 
@@ -77,6 +76,7 @@ void run(const CLI::App& app, const Arguments& arguments, const ConfigOptions& o
   DriveRun drive(config);
   const Run run = runSequence(sequence, scans, drive, arguments.out);
   report(run, config, drive, sequence.hasLabels());
+  if (!arguments.out.empty()) writeRunFigures(arguments.out, figuresOf(drive, config));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -105,6 +106,20 @@ std::size_t peakMemory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024U;
+}
+
+RunFigures figuresOf(const DriveRun& drive, const Config& config) {
+  RunFigures figures;
+  figures.method = fmt::format("{}, {} m", nameOf(config.method), config.voxel_size);
+  figures.scans = drive.times().size();
+  figures.median_time = quantile(drive.times(), 0.5);
+  figures.p99_time = quantile(drive.times(), 0.99);
+  figures.median_cpu_time = quantile(drive.cpuTimes(), 0.5);
+  const double cpu_time = std::accumulate(drive.cpuTimes().begin(), drive.cpuTimes().end(), 0.0);
+  figures.mean_cpu_time = cpu_time / static_cast<double>(std::max<std::size_t>(figures.scans, 1));
+  figures.peak_memory = peakMemory();
+  figures.method_memory = drive.memoryBytes();
+  return figures;
 }
 
 std::string megabytes(std::size_t bytes) { return fmt::format("{:.1f} MB", static_cast<double>(bytes) / 1e6); }

@@ -9,6 +9,8 @@
 #include <CLI/CLI.hpp>
 
 #include "donex/core/config.h"
+#include "donex/io/drive_run.h"
+#include "donex/io/evaluation.h"
 
 namespace donex {
 
@@ -62,6 +64,9 @@ double quantile(std::vector<double> values, double fraction);
 
 /// The most memory the process ever had resident [bytes].
 std::size_t peakMemory();
+
+/// What a run over a drive took, of this process.
+RunFigures figuresOf(const DriveRun& drive, const Config& config);
 
 /// "12.3 MB".
 std::string megabytes(std::size_t bytes);

@@ -114,6 +114,36 @@ TEST_F(Programs, EvaluateRefusesWhatItCannotScore) {
   expect(1, "seq/labels: holds no labels to score by", DONEX_EVALUATE, "seq seq");
 }
 
+TEST_F(Programs, EvaluateWritesReports) {
+  run(DONEX_SEQUENCE, "seq --out pred");
+  expect(0, "prediction", DONEX_EVALUATE, "seq pred --csv out.csv --json out.json --html out.html");
+  for (const char* file : {"out.csv", "out.json", "out.html", "pred/run.json"}) EXPECT_TRUE(fs::exists(path(file))) << file;
+  expect(1, "none/out.csv: cannot be written", DONEX_EVALUATE, "seq pred --csv none/out.csv");
+}
+
+TEST_F(Programs, CompareRunsEveryMethodAndReports) {
+  const Outcome outcome = expect(0, "out/report.html", DONEX_COMPARE, "seq --out out");
+  for (const char* method : {"donex_3d", "donex_2d", "paper_3d", "paper_3d_zbuffer", "paper_2d", "motion_voxel_grid",
+                             "ray_tracing", "range_residual", "peopleremover"}) {
+    EXPECT_NE(outcome.text.find(method), std::string::npos) << method;
+    EXPECT_TRUE(fs::exists(path(std::string("out/predictions/seq/") + method + "/000007.label"))) << method;
+  }
+  EXPECT_TRUE(fs::exists(path("out/table_1/donex_2d_0.15/run.json")));
+}
+
+TEST_F(Programs, CompareRefusesWhatItCannotRun) {
+  expect(2, "--out is required", DONEX_COMPARE, "seq");
+  expect(2, "there is no method donex, only donex_3d, ", DONEX_COMPARE, "seq --out out --methods donex");
+  expect(1, "none: is not a directory", DONEX_COMPARE, "seq none --out out");
+  fs::remove_all(path("seq/labels"));
+  expect(1, "seq/labels: holds no labels to score by", DONEX_COMPARE, "seq --out out");
+}
+
+TEST_F(Programs, WholeDriveMethodsRunOnSequences) {
+  expect(0, "8 scans, 80 echoes", DONEX_SEQUENCE, "seq --method peopleremover --out pred");
+  EXPECT_TRUE(fs::exists(path("pred/000007.label")));
+}
+
 #ifdef DONEX_BAG
 
 TEST_F(Programs, BagIsLabelled) {

@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +39,22 @@ struct Counts {
 /// Ranges are split every 10 m: [0, 10), ..., [40, 50], and on to max_range.
 inline constexpr double kRangeBand = 10.0;  // [m]
 
+/// Speeds are split here [m/s]: below 1, 1 to 3, 3 to 8, 8 to 15, and above.
+inline constexpr std::array<double, 4> kSpeedBandEnds{1.0, 3.0, 8.0, 15.0};
+/// The band of a speed, 0 to kSpeedBandEnds.size(), and its name ("3 to 8 m/s").
+std::size_t speedBand(double speed);
+std::string speedBandName(std::size_t band);
+
+/// Things, not echoes: a moving instance in a scan is found when at least half of its scored echoes are called
+/// moving. Those with fewer scored echoes than kLeastEchoes are not counted.
+struct ObjectCounts {
+  std::uint64_t found = 0;
+  std::uint64_t all = 0;
+  double recall() const;
+
+  static constexpr std::uint64_t kLeastEchoes = 10;
+};
+
 /// The score of one predictor over one sequence (or several).
 class Evaluation {
  public:
@@ -49,33 +67,57 @@ class Evaluation {
   void add(std::size_t scan_index, const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint32_t>& truth,
            const std::vector<std::uint32_t>& prediction);
 
+  /// The same; `speedOf` tells an instance's speed [m/s], or nothing, and fills bySpeed.
+  using SpeedOf = std::function<std::optional<double>(std::uint32_t instance)>;
+  void add(std::size_t scan_index, const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint32_t>& truth,
+           const std::vector<std::uint32_t>& prediction, const SpeedOf& speedOf);
+
   std::size_t scans() const { return scans_; }
   const Counts& total() const { return total_; }
   /// By true class (lower 16 bits of the label).
   const std::map<std::uint32_t, Counts>& byClass() const { return by_class_; }
   /// By band of kRangeBand.
   const std::vector<Counts>& byRange() const { return by_range_; }
+  /// Moving instances by band of speed (kSpeedBandEnds): only their hits and misses; instances without a speed in none.
+  const std::array<Counts, kSpeedBandEnds.size() + 1>& bySpeed() const { return by_speed_; }
+  /// Moving instances, once a scan, and by true class.
+  const ObjectCounts& objects() const { return objects_; }
+  const std::map<std::uint32_t, ObjectCounts>& objectsByClass() const { return objects_by_class_; }
 
  private:
   void addEcho(double range, std::uint32_t truth, bool said_moving);
+  void addObject(std::uint32_t truth, const Counts& counts, const std::optional<double>& speed);
 
   ScoringRules rules_;
   std::size_t scans_ = 0;
   Counts total_;
   std::map<std::uint32_t, Counts> by_class_;
   std::vector<Counts> by_range_;
+  std::array<Counts, kSpeedBandEnds.size() + 1> by_speed_;
+  ObjectCounts objects_;
+  std::map<std::uint32_t, ObjectCounts> objects_by_class_;
 };
 
 /// SemanticKITTI's name of a class ("moving car"), or "class N".
 std::string className(std::uint32_t label);
 
+/// What a prediction took to make, where that is known.
+struct RunFigures {
+  std::string method;  ///< and its settings, in words
+  std::size_t scans = 0;
+  double median_time = 0.0, p99_time = 0.0, median_cpu_time = 0.0;  ///< a scan [s]
+  double mean_cpu_time = 0.0;                                       ///< a scan, all passes [s]
+  std::size_t peak_memory = 0, method_memory = 0;                   ///< of the process, of the method alone [bytes]
+};
+
 /// A column of the tables below.
 struct NamedEvaluation {
   std::string name;
   const Evaluation* evaluation = nullptr;
+  std::optional<RunFigures> figures = std::nullopt;
 };
 
-/// Text tables, predictions side by side: overall, by class, by range.
+/// Text tables, predictions side by side: overall with time and memory, by class, by range, by speed.
 std::string formatEvaluations(const std::vector<NamedEvaluation>& columns);
 
 }  // namespace donex

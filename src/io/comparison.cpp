@@ -1,0 +1,83 @@
+#include "donex/io/comparison.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "donex/io/object_speeds.h"
+
+namespace donex {
+namespace {
+
+namespace fs = std::filesystem;
+using Labels = std::vector<std::uint32_t>;
+
+/// The labels of a scan, or nothing and a fault.
+std::optional<Labels> readPrediction(ScoredPrediction& prediction, std::size_t index, std::size_t echoes) {
+  const fs::path file = prediction.directory / (scanName(index) + ".label");
+  try {
+    Labels labels = readLabels(file);
+    if (labels.size() == echoes) return labels;
+    prediction.faults.add(
+        fmt::format("{}: {} labels for {} echoes, not scored", file.string(), labels.size(), echoes));
+  } catch (const DataError& error) {
+    prediction.faults.add(std::string(error.what()) + ", not scored");
+  }
+  return std::nullopt;
+}
+
+void scoreScan(const SequenceReader& sequence, std::size_t index, const ObjectSpeeds& speeds, const Labels& truth,
+               std::vector<ScoredPrediction>& predictions) {
+  const std::vector<Eigen::Vector3f> echoes = sequence.scan(index).echoes;
+  const auto speedOf = [&](std::uint32_t instance) { return speeds.at(instance, sequence.stamp(index)); };
+  for (ScoredPrediction& prediction : predictions) {
+    const auto labels = readPrediction(prediction, index, echoes.size());
+    if (labels) prediction.evaluation.add(index, echoes, truth, *labels, speedOf);
+  }
+}
+
+BirdView viewOf(const SequenceReader& sequence, std::size_t index, const std::vector<ScoredPrediction>& predictions) {
+  const std::vector<Eigen::Vector3f> echoes = sequence.scan(index).echoes;
+  std::vector<Labels> labels;
+  for (ScoredPrediction prediction : predictions) {  // a copy: its faults have been told
+    labels.push_back(readPrediction(prediction, index, echoes.size()).value_or(Labels()));
+  }
+  return makeBirdView(index, echoes, sequence.labels(index), labels);
+}
+
+}  // namespace
+
+std::vector<NamedEvaluation> SequenceComparison::columns() const {
+  std::vector<NamedEvaluation> columns;
+  for (const ScoredPrediction& prediction : predictions) {
+    columns.push_back({prediction.name, &prediction.evaluation, prediction.figures});
+  }
+  return columns;
+}
+
+SequenceComparison compareOnSequence(const SequenceReader& sequence, std::size_t scans,
+                                     const std::vector<std::pair<std::string, fs::path>>& predictions,
+                                     const std::function<void()>& progress) {
+  SequenceComparison comparison;
+  const fs::path directory = sequence.directory() / "";  // so that a path with and one without a slash have one name
+  comparison.name = directory.parent_path().filename().string();
+  comparison.scans = scans;
+  for (const auto& [name, labels] : predictions) {
+    comparison.predictions.push_back({name, labels, Evaluation(), readRunFigures(labels), Faults()});
+  }
+  const ObjectSpeeds speeds(sequence);
+  std::size_t most_moving = 0, most_moving_scan = scans;
+  for (std::size_t i = 0; i < scans; ++i) {
+    if (sequence.hasLabels(i) && Evaluation().scores(i)) {
+      const Labels truth = sequence.labels(i);
+      scoreScan(sequence, i, speeds, truth, comparison.predictions);
+      const auto moving = static_cast<std::size_t>(std::count_if(truth.begin(), truth.end(), isMoving));
+      if (moving > most_moving || most_moving_scan == scans) most_moving = moving, most_moving_scan = i;
+    }
+    progress();
+  }
+  if (most_moving_scan < scans) comparison.view = viewOf(sequence, most_moving_scan, comparison.predictions);
+  return comparison;
+}
+
+}  // namespace donex

@@ -1,0 +1,43 @@
+#include "donex/io/object_speeds.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace donex {
+
+ObjectSpeeds::ObjectSpeeds(const SequenceReader& sequence) {
+  for (std::size_t i = 0; i < sequence.size(); ++i) {
+    if (!sequence.hasLabels(i)) continue;
+    add(sequence.stamp(i), sequence.pose(i), sequence.scan(i).echoes, sequence.labels(i));
+  }
+}
+
+void ObjectSpeeds::add(double stamp, const Pose& odom_from_sensor, const std::vector<Eigen::Vector3f>& echoes,
+                       const std::vector<std::uint32_t>& labels) {
+  std::map<std::uint32_t, std::pair<Eigen::Vector3d, double>> sums;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (instanceOfLabel(labels[i]) == 0 || !echoes[i].allFinite()) continue;
+    auto& [sum, count] = sums.try_emplace(instanceOfLabel(labels[i]), Eigen::Vector3d::Zero(), 0.0).first->second;
+    sum += echoes[i].cast<double>();
+    count += 1.0;
+  }
+  const Eigen::Isometry3d odom = odom_from_sensor.isometry();
+  for (const auto& [instance, sum] : sums) {
+    centers_[instance].emplace_back(stamp, odom * Eigen::Vector3d(sum.first / sum.second));
+  }
+}
+
+std::optional<double> ObjectSpeeds::at(std::uint32_t instance, double stamp) const {
+  const auto found = centers_.find(instance);
+  if (found == centers_.end()) return std::nullopt;
+  const auto& centers = found->second;
+  const auto earlier = [](const auto& center, double time) { return center.first < time; };
+  const auto first = std::lower_bound(centers.begin(), centers.end(), stamp - kReach, earlier);
+  const auto end = std::lower_bound(centers.begin(), centers.end(), stamp + kReach, earlier);
+  const bool is_seen = std::any_of(first, end, [&](const auto& center) { return center.first == stamp; });
+  if (!is_seen || end - first < 2) return std::nullopt;
+  const auto last = std::prev(end);
+  return (last->second - first->second).norm() / (last->first - first->first);
+}
+
+}  // namespace donex

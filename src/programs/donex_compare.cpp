@@ -1,0 +1,213 @@
+// The paper's comparison in numbers: every method over every sequence, and one report.
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "donex/io/comparison.h"
+#include "program.h"
+
+namespace donex {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::vector<std::string> sequences;
+  std::string out;
+  std::vector<std::string> methods;
+  std::size_t frames = 0;  ///< 0: all
+  bool skip_table_1 = false;
+};
+
+/// A method with its settings.
+struct Contender {
+  MethodNote note;
+  Config config;
+};
+
+Config configOf(Method method, bool is_paper) {
+  Config config;
+  config.method = method;
+  if (!is_paper) return config;
+  EvidenceConfig& e = config.evidence;
+  e.free_evidence = e.careful_sight = e.birth_age = e.neighbourhood = e.ground = false;
+  config.objects.enabled = false;
+  return config;
+}
+
+std::vector<Contender> allContenders() {
+  const char* const kPaper = "Stralau & Fu, DONEX";
+  return {
+      {{"donex_3d", "3D grid with evidence and objects: this package's default", kPaper, true},
+       configOf(Method::kDonex3d, false)},
+      {{"donex_2d", "2D grid with evidence and objects", kPaper, true}, configOf(Method::kDonex2d, false)},
+      {{"paper_3d", "the paper's 3D rule alone, see-through by traversal", kPaper, true},
+       configOf(Method::kDonex3d, true)},
+      {{"paper_3d_zbuffer", "the same, see-through by a z-buffer", "Hu & Li 2012, set aside by the paper", true},
+       configOf(Method::kDonex3dZBuffer, true)},
+      {{"paper_2d", "the paper's 2D rule alone, no line of sight", kPaper, true}, configOf(Method::kDonex2d, true)},
+      {{"motion_voxel_grid", "ground planes by region, static and dynamic counters of voxels", "Asvadi et al. 2016", true},
+       configOf(Method::kMotionVoxelGrid, false)},
+      {{"ray_tracing", "mesh of the scan before, probability, Dempster-Shafer", "Lee, Kim & Jo 2019", true},
+       configOf(Method::kRayTracing, false)},
+      {{"range_residual", "residual image of two scans, a threshold", "Chen et al. 2021, without learning", true},
+       configOf(Method::kRangeResidual, false)},
+      {{"peopleremover", "what any line of sight of the drive sees through", "Schauer & Nuechter 2018", false},
+       configOf(Method::kPeopleremover, false)}};
+}
+
+std::vector<Contender> chooseContenders(const std::vector<std::string>& names) {
+  std::vector<Contender> all = allContenders(), chosen;
+  if (names.empty()) return all;
+  for (const std::string& name : names) {
+    const auto found = std::find_if(all.begin(), all.end(), [&](const Contender& c) { return c.note.name == name; });
+    if (found == all.end()) {
+      std::string known;
+      for (const Contender& contender : all) known += (known.empty() ? "" : ", ") + contender.note.name;
+      throw ArgumentError(fmt::format("there is no method {}, only {}", name, known));
+    }
+    chosen.push_back(*found);
+  }
+  return chosen;
+}
+
+std::size_t scansOf(const SequenceReader& sequence, std::size_t frames) {
+  return frames == 0 ? sequence.size() : std::min(frames, sequence.size());
+}
+
+/// Runs `work` in a process of its own, so that peak memory is that of one method; throws where it failed.
+void inOwnProcess(const std::string& what, const std::function<void()>& work) {
+  std::fflush(nullptr);
+  const pid_t child = fork();
+  if (child < 0) throw DataError(what + ": no process can be started");
+  if (child == 0) {
+    int code = 0;
+    try {
+      work();
+    } catch (const std::exception& error) {
+      fmt::print(stderr, "donex_compare: {}: {}\n", what, error.what());
+      code = 1;
+    }
+    std::fflush(nullptr);
+    _exit(code);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  const bool is_done = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  if (!is_done) throw DataError(what + ": could not be run");
+}
+
+/// Labels where `with_labels`, and run.json.
+void runContender(const SequenceReader& sequence, std::size_t scans, const Config& config, const fs::path& out,
+                  bool with_labels) {
+  fs::create_directories(out);
+  DriveRun drive(config);
+  const auto keep = [&](std::size_t i, const Scan&, const EchoLabels& labels) {
+    if (with_labels) writeLabels(out / (scanName(i) + ".label"), asSemanticKitti(labels));
+  };
+  ProgressBar progress(scans * drive.passes());
+  drive.run(sequence, scans, keep, [&] { progress.advance(); });
+  writeRunFigures(out, figuresOf(drive, config));
+}
+
+/// The name of its directory, with a number where two are called alike.
+std::string nameOf(const std::string& directory, std::set<std::string>& taken) {
+  const std::string name = (fs::absolute(directory) / "").lexically_normal().parent_path().filename().string();
+  std::string unique = name;
+  for (int i = 2; !taken.insert(unique).second; ++i) unique = fmt::format("{}_{}", name, i);
+  return unique;
+}
+
+SequenceComparison compare(const std::string& directory, const std::string& name, const Arguments& arguments,
+                           const std::vector<Contender>& contenders) {
+  const SequenceReader sequence(directory);
+  const std::size_t scans = scansOf(sequence, arguments.frames);
+  std::vector<std::pair<std::string, fs::path>> predictions;
+  for (const Contender& contender : contenders) {
+    const fs::path out = fs::path(arguments.out) / "predictions" / name / contender.note.name;
+    fmt::print("{}: {}\n", name, contender.note.name);
+    inOwnProcess(contender.note.name + " on " + name,
+                 [&] { runContender(sequence, scans, contender.config, out, true); });
+    predictions.emplace_back(contender.note.name, out);
+  }
+  SequenceComparison comparison = compareOnSequence(sequence, scans, predictions, [] {});
+  comparison.name = name;
+  return comparison;
+}
+
+/// The paper's Table 1 (measured on an i7-8650U, 160,000 echoes), its region, on this sequence.
+void fillTable1(Comparison& comparison, const std::string& directory, const std::string& out) {
+  const SequenceReader sequence(directory);
+  const std::size_t scans = scansOf(sequence, 30);
+  const auto measure = [&](Method method, double voxel_size) {
+    Config config = configOf(method, true);
+    config.voxel_size = voxel_size;
+    config.region = {0.0, 75.0, -25.0, 25.0, -4.0, 6.0};
+    const fs::path place = fs::path(out) / "table_1" / fmt::format("{}_{}", nameOf(method), voxel_size);
+    inOwnProcess(place.filename().string(), [&] { runContender(sequence, scans, config, place, false); });
+    return readRunFigures(place)->median_cpu_time;
+  };
+  comparison.table_1 = {{0.3, "8-9 ms", "175-185 ms"}, {0.15, "12-14 ms", "550-560 ms"}, {0.1, "21-23 ms", "1300-1350 ms"}};
+  std::size_t echoes = 0;
+  for (std::size_t i = 0; i < scans; ++i) echoes += sequence.echoes(i) / scans;
+  comparison.table_1_setting = fmt::format(
+      "Region x 0 to 75 m, y -25 to 25 m, the paper's rule. Published: 160,000 echoes, i7-8650U. Measured: {}, {} scans "
+      "of {} echoes in all directions, those outside the region only see through it; median CPU time of one thread.",
+      comparison.sequences.front().name, scans, echoes);
+  fmt::print("Table 1\n");
+  for (Table1Row& row : comparison.table_1) {
+    row.measured_2d = measure(Method::kDonex2d, row.voxel_size);
+    row.measured_3d = measure(Method::kDonex3d, row.voxel_size);
+    row.measured_z_buffer = measure(Method::kDonex3dZBuffer, row.voxel_size);
+  }
+}
+
+void writeReports(const Comparison& comparison, const fs::path& out) {
+  writeReport(out / "report.csv", toCsv(comparison));
+  writeReport(out / "report.json", toJson(comparison));
+  writeReport(out / "report.html", toHtml(comparison));
+  for (const SequenceComparison& sequence : comparison.sequences) {
+    fmt::print("\n{}\n{}", sequence.name, formatEvaluations(sequence.columns()));
+  }
+  fmt::print("\n{}\n", (out / "report.html").string());
+}
+
+void run(const Arguments& arguments) {
+  const auto contenders = chooseContenders(arguments.methods);
+  Comparison comparison;
+  comparison.title = "DONEX and the systems it is compared with";
+  comparison.command = "donex_compare";
+  for (const std::string& sequence : arguments.sequences) comparison.command += " " + sequence;
+  for (const Contender& contender : contenders) comparison.methods.push_back(contender.note);
+  for (const std::string& directory : arguments.sequences) {  // all faults of the input before the first hour of work
+    if (!SequenceReader(directory).hasLabels()) throw DataError(directory + "/labels: holds no labels to score by");
+  }
+  std::error_code error;
+  fs::create_directories(arguments.out, error);
+  if (error) throw DataError(fmt::format("{}: cannot be created: {}", arguments.out, error.message()));
+  std::set<std::string> names;
+  for (const std::string& directory : arguments.sequences) {
+    comparison.sequences.push_back(compare(directory, nameOf(directory, names), arguments, contenders));
+  }
+  if (!arguments.skip_table_1) fillTable1(comparison, arguments.sequences.front(), arguments.out);
+  writeReports(comparison, arguments.out);
+}
+
+}  // namespace
+}  // namespace donex
+
+int main(int argc, char** argv) {
+  CLI::App app("Runs DONEX and the systems of the paper's comparison over labelled sequences; writes one report.",
+               "donex_compare");
+  donex::Arguments arguments;
+  app.add_option("SEQ_DIR", arguments.sequences, "sequences with labels/NNNNNN.label")->required();
+  app.add_option("--out", arguments.out, "directory for report.html, .csv, .json and predictions/")->required();
+  app.add_option("--methods", arguments.methods, "only these, separated by commas; by default all")->delimiter(',');
+  app.add_option("--frames", arguments.frames, "only the first N scans")->check(CLI::PositiveNumber);
+  app.add_flag("--skip-table-1", arguments.skip_table_1, "leave out the times of the paper's Table 1");
+  return donex::runProgram(app, argc, argv, [&] { donex::run(arguments); });
+}
