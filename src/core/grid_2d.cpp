@@ -4,10 +4,14 @@
 #include <cmath>
 
 namespace donex {
-Grid2d::Grid2d(const Config& config) : window_(config), layout_(window_), cells_(layout_.slots()) {}
+namespace {
 
-std::uint32_t Grid2d::slotOf(const Eigen::Vector3f& echo) const {
-  return layout_.slotOf(static_cast<int>(std::floor(echo.x())), static_cast<int>(std::floor(echo.y())));
+constexpr int kAhead = 16;  // cells are asked of memory so many echoes before they are needed
+
+}  // namespace
+
+Grid2d::Grid2d(const Config& config) : window_(config), layout_(window_), cells_(layout_.slots() + 1) {
+  if (config.compensation == Compensation::kResample) content_of_cell_.resize(layout_.slots());
 }
 
 void Grid2d::shift(const Eigen::Isometry3d& odom_from_base) {
@@ -40,13 +44,13 @@ void Grid2d::place(const Content& content, const Eigen::Isometry3d& grid_from_od
   range.extend(static_cast<float>(hi.z()));
   if (cell.range.empty()) {
     cell.range = range;
-    cell.content = static_cast<std::uint32_t>(contents_.size());
+    content_of_cell_[slot] = static_cast<std::uint32_t>(contents_.size());
     contents_.push_back({content.lo_in_odom, content.hi_in_odom, slot});
     return;
   }
   // Two contents in one cell: the older keeps its place and grows to the range of both.
   cell.range.extend(range);
-  Content& older = contents_[cell.content];
+  Content& older = contents_[content_of_cell_[slot]];
   const Eigen::Vector2d at =
       0.5 * (toWindow(grid_from_odom * older.lo_in_odom) + toWindow(grid_from_odom * older.hi_in_odom)).head<2>();
   older.lo_in_odom = fromWindow({at.x(), at.y(), cell.range.lo});
@@ -61,22 +65,42 @@ Eigen::Vector3d Grid2d::fromWindow(const Eigen::Vector3d& in_window) const {
   return window_.odomFromGrid() * ((in_window + window_.minIndex().cast<double>()) * window_.voxelSize());
 }
 
-void Grid2d::resize(const GridScan& scan) {
+void Grid2d::take(const Scan& scan, EchoLabels& labels) {
   ++scan_;
   hit_.clear();
-  for (std::size_t i = 0; i < scan.echoes.size(); ++i) {
-    if (scan.inside[i] == 0) continue;
-    const Eigen::Vector3f& echo = scan.echoes[i];
-    const std::uint32_t slot = slotOf(echo);
-    Cell& cell = cells_[slot];
+  labels.resize(scan.echoes.size());
+  no_echoes_.clear();
+  new_voxels_.clear();
+  new_voxels_.reserve(scan.echoes.size());
+  const bool resamples = window_.compensation() == Compensation::kResample;
+  const auto judge_block = [&](std::size_t first, const EchoBlock& block) {
+    block.appendNoEchoes(first, no_echoes_);
+    resamples ? judge<true>(first, block, labels) : judge<false>(first, block, labels);
+  };
+  forEachBlock(window_.placementOf(scan), scan.echoes, 0, blocksOf(scan.echoes.size()), judge_block);
+  if (resamples) rememberContents();
+}
+
+template <bool keep_order>
+void Grid2d::judge(std::size_t first, const EchoBlock& block, EchoLabels& labels) {
+  BlockSlots at;
+  layout_.locate(block, at);
+  for (int i = 0; i < block.count; ++i) {
+    if (i + kAhead < EchoBlock::kSize) __builtin_prefetch(&cells_[at.slot[i + kAhead]], 1);
+    Cell& cell = cells_[at.slot[i]];
     if (cell.scan != scan_) {
       cell.scan = scan_;
+      cell.before = cell.range;
       cell.range = HeightRange{};
-      if (window_.compensation() == Compensation::kResample) hit_.push_back(slot);
+      if (keep_order && block.inside[i] != 0) hit_.push_back(at.slot[i]);
     }
-    cell.range.extend(layout_.heightOf(echo));
+    const float height = block.z[i] + layout_.lift();
+    cell.range.extend(height);
+    const bool is_new = block.inside[i] != 0 && !cell.before.holds(height);
+    if (is_new) new_voxels_.emplace_back(block.voxel_x[i], block.voxel_y[i], block.voxel_z[i]);
+    labels.dynamic[first + static_cast<std::size_t>(i)] = is_new ? 1 : 0;
+    labels.observed[first + static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(block.inside[i]);
   }
-  if (window_.compensation() == Compensation::kResample) rememberContents();
 }
 
 void Grid2d::rememberContents() {
@@ -94,6 +118,8 @@ void Grid2d::rememberContents() {
 
 void Grid2d::reset() {
   std::fill(cells_.begin(), cells_.end(), Cell{});
+  new_voxels_.clear();
+  no_echoes_.clear();
   contents_.clear();
   scan_ = 0;
   layout_.reset();
@@ -103,7 +129,8 @@ HeightRange Grid2d::rangeAt(int x, int y) const { return cells_[layout_.slotOf(x
 
 std::size_t Grid2d::memoryBytes() const {
   return cells_.capacity() * sizeof(Cell) + contents_.capacity() * sizeof(Content) +
-         hit_.capacity() * sizeof(std::uint32_t);
+         (no_echoes_.capacity() + content_of_cell_.capacity() + hit_.capacity()) * sizeof(std::uint32_t) +
+         new_voxels_.capacity() * sizeof(Index3);
 }
 
 }  // namespace donex

@@ -1,9 +1,20 @@
 #include "donex/core/grid_3d.h"
 
+#include <algorithm>
+
 namespace donex {
+namespace {
+
+constexpr std::uint64_t kAll = ~std::uint64_t{0};
+constexpr int kAhead = 12;  // bricks are asked of memory so many echoes before they are needed
+
+std::uint64_t maskOf(std::uint32_t bit) { return std::uint64_t{1} << bit; }
+
+}  // namespace
 
 Grid3d::Grid3d(const Config& config)
-    : window_(config), layout_(window_.extent()), remembered_(layout_.slots()), hit_(layout_.slots()) {
+    : window_(config), layout_(window_.extent()), bricks_(layout_.slots() + 1) {
+  bricks_.back().remembered = kAll;  // what is outside is never new
   layout_.scrollTo(window_.minIndex());
 }
 
@@ -18,95 +29,130 @@ void Grid3d::shift(const Eigen::Isometry3d& odom_from_base) {
 void Grid3d::scroll(const Eigen::Isometry3d& odom_from_base) {
   const Index3 before = window_.minIndex();
   window_.moveTo(odom_from_base);
-  const Index3 moved = window_.minIndex() - before;
-  if (moved.isZero()) return;
-  remembered_.transform([&](std::uint32_t slot, std::uint64_t word) {
-    return window_.contains(layout_.cornerOf(slot) - moved) ? word : 0;
-  });
+  if (window_.minIndex() == before) return;
+  const auto leaves = [&](const Used& used) {
+    const bool stays = window_.contains(used.corner - window_.minIndex());
+    if (!stays) bricks_[used.slot] = Brick{};
+    return !stays;
+  };
+  used_.erase(std::remove_if(used_.begin(), used_.end(), leaves), used_.end());
   layout_.scrollTo(window_.minIndex());
 }
 
 void Grid3d::resample(const Eigen::Isometry3d& odom_from_base) {
   window_.moveTo(odom_from_base);
   const Eigen::Isometry3d grid_from_odom = window_.odomFromGrid().inverse();
-  remembered_.clear();
+  clearBricks();
   std::size_t kept = 0;
   for (Content& content : contents_) {
     const Eigen::Vector3d in_grid = grid_from_odom * content.in_odom / window_.voxelSize();
     const Index3 voxel = in_grid.array().floor().cast<int>().matrix() - window_.minIndex();
     if (!window_.contains(voxel)) continue;
     content.at = layout_.locate(voxel);
+    Brick& brick = brickAt(content.at.slot, voxel);
     // Two contents in one voxel: the older stays, so a content never moves by another's residual.
-    if (remembered_.set(content.at)) contents_[kept++] = content;
+    if ((brick.remembered & maskOf(content.at.bit)) != 0) continue;
+    brick.remembered |= maskOf(content.at.bit);
+    contents_[kept++] = content;
   }
   contents_.resize(kept);
 }
 
-void Grid3d::hit(const GridScan& scan) {
-  const bool keep_order = window_.compensation() == Compensation::kResample;
-  hit_.clear();
+/// The brick of a voxel of the window, listed as used.
+Grid3d::Brick& Grid3d::brickAt(std::uint32_t slot, const Index3& in_window) {
+  Brick& brick = bricks_[slot];
+  const bool is_empty = (brick.remembered | brick.hit) == 0;
+  if (is_empty) used_.push_back({slot, (in_window + window_.minIndex()).unaryExpr([](int i) { return i & ~3; })});
+  return brick;
+}
+
+void Grid3d::take(const Scan& scan, EchoLabels& labels) {
+  const Placement placement = window_.placementOf(scan);
+  rays_.begin(placement, scan.echoes);
+  hit(scan, placement, labels);
+  rays_.finish();
+  remember([&](std::uint64_t candidates, const Index3& corner) { return rays_.seenThrough(candidates, corner); });
+}
+
+void Grid3d::hit(const Scan& scan, const Placement& placement, EchoLabels& labels) {
+  labels.resize(scan.echoes.size());
   hit_voxels_.clear();
-  for (std::size_t i = 0; i < scan.echoes.size(); ++i) {
-    if (scan.inside[i] == 0) continue;
-    const Index3 voxel = voxelOf(scan.echoes[i]);
-    const bool is_first = hit_.set(layout_.locate(voxel));
-    if (is_first && keep_order) hit_voxels_.push_back(voxel);
+  no_echoes_.clear();
+  new_voxels_.clear();
+  new_voxels_.reserve(scan.echoes.size());
+  const bool resamples = window_.compensation() == Compensation::kResample;
+  const auto judge = [&](std::size_t first, const EchoBlock& block) {
+    block.appendNoEchoes(first, no_echoes_);
+    rays_.add(first, block);
+    resamples ? hit<true>(first, block, labels) : hit<false>(first, block, labels);
+  };
+  forEachBlock(placement, scan.echoes, 0, blocksOf(scan.echoes.size()), judge);
+}
+
+template <bool keep_order>
+void Grid3d::hit(std::size_t first, const EchoBlock& block, EchoLabels& labels) {
+  BlockSlots at;
+  layout_.locate(block, at);
+  for (int i = 0; i < block.count; ++i) {
+    if (i + kAhead < EchoBlock::kSize) __builtin_prefetch(&bricks_[at.slot[i + kAhead]], 1);
+    const Index3 voxel(block.voxel_x[i], block.voxel_y[i], block.voxel_z[i]);
+    Brick& brick = brickAt(at.slot[i], voxel);
+    const std::uint64_t mask = maskOf(at.bit[i]);
+    const bool is_new = (brick.remembered & mask) == 0;
+    if (keep_order && block.inside[i] != 0 && (brick.hit & mask) == 0) hit_voxels_.push_back(voxel);
+    brick.hit |= mask;
+    if (is_new) new_voxels_.push_back(voxel);
+    labels.dynamic[first + static_cast<std::size_t>(i)] = is_new ? 1 : 0;
+    labels.observed[first + static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(block.inside[i]);
   }
 }
 
-void Grid3d::deshadow(const GridScan& scan) {
-  rays_.build(scan.origin, scan.echoes);
-  remembered_.transform([&](std::uint32_t slot, std::uint64_t word) {
-    std::uint64_t candidates = word & ~hit_.word(slot);
-    if (candidates == 0) return word;
-    const Index3 corner = layout_.cornerOf(slot);
-    if (!rays_.maySeeThrough(corner, GridWindow::kBrick)) return word;
-    for (; candidates != 0; candidates &= candidates - 1) {
-      const int bit = __builtin_ctzll(candidates);
-      if (rays_.seesThrough(BrickLayout::voxelOfBit(corner, bit))) word &= ~(std::uint64_t{1} << bit);
-    }
-    return word;
-  });
-}
-
-void Grid3d::remember() {
-  if (window_.compensation() == Compensation::kResample) rememberContents();
-  for (const std::uint32_t slot : hit_.used()) remembered_.add(slot, hit_.word(slot));
+/// A hit voxel starts anew from its centre; one in the shadow keeps the residual it carries.
+void Grid3d::forgetHitContents() {
+  const auto is_hit = [&](const Content& content) {
+    return (bricks_[content.at.slot].hit & maskOf(content.at.bit)) != 0;
+  };
+  contents_.erase(std::remove_if(contents_.begin(), contents_.end(), is_hit), contents_.end());
 }
 
 void Grid3d::rememberContents() {
-  // A hit voxel starts anew from its centre; one in the shadow keeps the residual it carries.
-  std::size_t kept = 0;
-  for (const Content& content : contents_) {
-    if (remembered_.test(content.at) && !hit_.test(content.at)) contents_[kept++] = content;
-  }
-  contents_.resize(kept);
+  const auto is_forgotten = [&](const Content& content) {
+    return (bricks_[content.at.slot].remembered & maskOf(content.at.bit)) == 0;
+  };
+  contents_.erase(std::remove_if(contents_.begin(), contents_.end(), is_forgotten), contents_.end());
   for (const Index3& voxel : hit_voxels_) {
     contents_.push_back({window_.odomFromGrid() * window_.indexToCenter(voxel), layout_.locate(voxel)});
   }
 }
 
+void Grid3d::clearBricks() {
+  for (const Used& used : used_) bricks_[used.slot] = Brick{};
+  used_.clear();
+}
+
 void Grid3d::reset() {
-  remembered_.clear();
-  hit_.clear();
+  clearBricks();
+  rays_.reset();
+  new_voxels_.clear();
+  no_echoes_.clear();
   contents_.clear();
   hit_voxels_.clear();
 }
 
 std::vector<Index3> Grid3d::remembered() const {
   std::vector<Index3> voxels;
-  for (const std::uint32_t slot : remembered_.used()) {
-    const Index3 corner = layout_.cornerOf(slot);
-    for (std::uint64_t word = remembered_.word(slot); word != 0; word &= word - 1) {
-      voxels.push_back(BrickLayout::voxelOfBit(corner, __builtin_ctzll(word)));
+  for (const Used& used : used_) {
+    for (std::uint64_t word = bricks_[used.slot].remembered; word != 0; word &= word - 1) {
+      voxels.push_back(BrickLayout::voxelOfBit(used.corner - window_.minIndex(), __builtin_ctzll(word)));
     }
   }
   return voxels;
 }
 
 std::size_t Grid3d::memoryBytes() const {
-  return remembered_.bytes() + hit_.bytes() + rays_.memoryBytes() + contents_.capacity() * sizeof(Content) +
-         hit_voxels_.capacity() * sizeof(Index3);
+  return bricks_.capacity() * sizeof(Brick) + used_.capacity() * sizeof(Used) + rays_.memoryBytes() +
+         contents_.capacity() * sizeof(Content) + no_echoes_.capacity() * sizeof(std::uint32_t) +
+         (hit_voxels_.capacity() + new_voxels_.capacity()) * sizeof(Index3);
 }
 
 }  // namespace donex

@@ -61,36 +61,34 @@ void GridWindow::moveTo(const Eigen::Isometry3d& odom_from_base) {
   grid_from_base_ = odom_from_base;
 }
 
-void GridWindow::enter(const Scan& scan, GridScan& result) const {
+Placement GridWindow::placementOf(const Scan& scan) const {
   // Only the short way from window corner to echo is left to single precision.
   Eigen::Isometry3d window_from_base = grid_from_base_;
   window_from_base.translation() -= min_index_.cast<double>() * voxel_size_;
   const Eigen::Isometry3d window_from_sensor = window_from_base * scan.base_from_sensor;
-  const Eigen::Matrix3f rotation = (window_from_sensor.linear() / voxel_size_).cast<float>();
-  const Eigen::Vector3f origin = (window_from_sensor.translation() / voxel_size_).cast<float>();
-  const Eigen::Matrix3f mounting = scan.base_from_sensor.linear().cast<float>();
-  const Eigen::Vector3f mounted_at = scan.base_from_sensor.translation().cast<float>();
-  const Eigen::Array3f low = Eigen::Array3d(region_.x_min, region_.y_min, region_.z_min).cast<float>();
-  const Eigen::Array3f high = Eigen::Array3d(region_.x_max, region_.y_max, region_.z_max).cast<float>();
-  const Eigen::Array3f extent = extent_.cast<float>().array();
+  Placement placement;
+  placement.rotation = (window_from_sensor.linear() / voxel_size_).cast<float>();
+  placement.origin = (window_from_sensor.translation() / voxel_size_).cast<float>();
+  placement.extent = extent_.cast<float>();
+  placement.mounting = scan.base_from_sensor.linear().cast<float>();
+  placement.mounted_at = scan.base_from_sensor.translation().cast<float>();
+  placement.region_low = Eigen::Vector3d(region_.x_min, region_.y_min, region_.z_min).cast<float>();
+  placement.region_high = Eigen::Vector3d(region_.x_max, region_.y_max, region_.z_max).cast<float>();
+  return placement;
+}
 
-  result.origin = origin;
+void GridWindow::enter(const Scan& scan, GridScan& result) const {
+  const Placement placement = placementOf(scan);
+  result.origin = placement.origin;
   result.echoes.resize(scan.echoes.size());
   result.inside.resize(scan.echoes.size());
-  for (std::size_t i = 0; i < scan.echoes.size(); ++i) {
-    const Eigen::Vector3f& echo = scan.echoes[i];
-    const bool is_echo = echo.squaredNorm() <= kFarthestEcho * kFarthestEcho;  // false for NaN
-    if (!is_echo) {
-      result.echoes[i].setConstant(std::numeric_limits<float>::quiet_NaN());
-      result.inside[i] = 0;
-      continue;
+  const auto keep = [&](std::size_t first, const EchoBlock& block) {
+    for (int i = 0; i < block.count; ++i) {
+      result.echoes[first + static_cast<std::size_t>(i)] = {block.x[i], block.y[i], block.z[i]};
+      result.inside[first + static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(block.inside[i]);
     }
-    const Eigen::Array3f in_base = mounting * echo + mounted_at;
-    const Eigen::Vector3f u = rotation * echo + origin;
-    result.echoes[i] = u;
-    result.inside[i] = (in_base >= low).all() && (in_base < high).all() && (u.array() >= 0.0F).all() &&
-                       (u.array() < extent).all();
-  }
+  };
+  forEachBlock(placement, scan.echoes, 0, blocksOf(scan.echoes.size()), keep);
 }
 
 GridOutline GridWindow::outline() const {
@@ -104,6 +102,10 @@ std::vector<Eigen::Vector3f> cellCenters(const GridWindow& window, const GridSca
   for (std::size_t i = 0; i < marked.size(); ++i) {
     if (marked[i] != 0 && scan.inside[i] != 0) voxels.push_back(voxelOf(scan.echoes[i]));
   }
+  return cellCenters(window, std::move(voxels));
+}
+
+std::vector<Eigen::Vector3f> cellCenters(const GridWindow& window, std::vector<Index3> voxels) {
   const auto before = [](const Index3& a, const Index3& b) {
     return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
   };

@@ -1,5 +1,7 @@
 #include "paper_detectors.h"
 
+#include <algorithm>
+
 #include "donex/core/grid_2d.h"
 #include "donex/core/grid_3d.h"
 #include "donex/core/stream_guard.h"
@@ -8,7 +10,26 @@
 namespace donex {
 namespace {
 
-/// What both grids share: the window, the labels of the last scan and the order of the steps.
+bool isBefore(const Index3& a, const Index3& b) {
+  return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+}
+
+/// Voxels of the window that the scan hits, in order.
+std::vector<Index3> hitVoxels(const GridWindow& window, const Scan& scan) {
+  GridScan in_grid;
+  window.enter(scan, in_grid);
+  std::vector<Index3> voxels;
+  for (std::size_t i = 0; i < in_grid.echoes.size(); ++i) {
+    if (in_grid.inside[i] != 0) voxels.push_back(voxelOf(in_grid.echoes[i]));
+  }
+  std::sort(voxels.begin(), voxels.end(), isBefore);
+  return voxels;
+}
+
+std::vector<Index3> rememberedBy(const Grid2d&) { return {}; }
+std::vector<Index3> rememberedBy(const Grid3d& grid) { return grid.remembered(); }
+
+/// What both grids share: the stream's order, and that nothing is new in the first scan.
 template <class Grid>
 class PaperDetector : public Detector {
  public:
@@ -17,40 +38,58 @@ class PaperDetector : public Detector {
   void process(const Scan& scan, EchoLabels& labels) override {
     guard_.admit(scan);
     grid_.shift(scan.odom_from_base);
-    grid_.window().enter(scan, scan_);
-    detectNew(labels);
-    if (watched_) before_ = rememberedCells();
-    update();
-    dynamic_ = labels.dynamic;
+    if (watched_) before_ = rememberedBy(grid_);
+    grid_.take(scan, labels);
+    if (watched_) hit_ = hitVoxels(grid_.window(), scan);
+    if (is_first_) std::fill(labels.dynamic.begin(), labels.dynamic.end(), 0);
+    judged_ = labels;
+    if (is_first_) labels.assign(scan.echoes.size());  // nothing is known yet, so nothing is new
+    knows_ = !is_first_;
     is_first_ = false;
   }
 
   void reset() override {
     grid_.reset();
     guard_.reset();
-    dynamic_.clear();
+    judged_.resize(0);
+    before_.clear();
     is_first_ = true;
+    knows_ = false;
   }
 
   const std::vector<Object>& objects() const override { return no_objects_; }
 
   std::vector<Eigen::Vector3f> dynamicCells() const override {
-    return cellCenters(grid_.window(), scan_, dynamic_);
+    return cellCenters(grid_.window(), knows_ ? grid_.newVoxels() : std::vector<Index3>());
   }
 
   std::vector<EchoReason> reasons() const override {
-    std::vector<EchoReason> reasons(dynamic_.size(), EchoReason::kSettled);
+    std::vector<EchoReason> reasons(judged_.dynamic.size(), EchoReason::kOutside);
     for (std::size_t i = 0; i < reasons.size(); ++i) {
-      if (scan_.inside[i] == 0) {
-        reasons[i] = scan_.echoes[i].allFinite() ? EchoReason::kOutside : EchoReason::kNoEcho;
-      } else if (dynamic_[i] != 0) {
-        reasons[i] = EchoReason::kMoving;
-      }
+      if (judged_.observed[i] != 0) reasons[i] = judged_.dynamic[i] != 0 ? EchoReason::kMoving : EchoReason::kSettled;
+    }
+    for (const std::uint32_t echo : grid_.noEchoes()) {
+      if (echo < reasons.size()) reasons[echo] = EchoReason::kNoEcho;
     }
     return reasons;
   }
 
-  MemoryCells memoryCells() const override;
+  MemoryCells memoryCells() const override {
+    MemoryCells cells;
+    const GridWindow& window = grid_.window();
+    std::vector<Index3> remembered = rememberedBy(grid_);
+    std::sort(remembered.begin(), remembered.end(), isBefore);
+    // Before the scan there were all of these: what was not forgotten was hit, or is in the shadow.
+    for (const Index3& voxel : before_) {
+      const Eigen::Vector3f center = (window.odomFromGrid() * window.indexToCenter(voxel)).cast<float>();
+      const bool stays = std::binary_search(remembered.begin(), remembered.end(), voxel, isBefore);
+      const bool is_hit = std::binary_search(hit_.begin(), hit_.end(), voxel, isBefore);
+      if (!stays) cells.seen_through.push_back(center);
+      else if (!is_hit) cells.shadowed.push_back(center);
+    }
+    return cells;
+  }
+
   void watch(bool watched) override {
     watched_ = watched;
     before_.clear();
@@ -59,88 +98,19 @@ class PaperDetector : public Detector {
   GridOutline outline() const override { return grid_.window().outline(); }
 
   std::size_t memoryBytes() const override {
-    return grid_.memoryBytes() + scan_.echoes.capacity() * sizeof(Eigen::Vector3f) + scan_.inside.capacity() +
-           dynamic_.capacity();
+    return grid_.memoryBytes() + judged_.dynamic.capacity() + judged_.observed.capacity();
   }
 
  private:
-  void detectNew(EchoLabels& labels) const {
-    labels.assign(scan_.echoes.size());
-    if (is_first_) return;  // nothing is known yet, so nothing is new
-    for (std::size_t i = 0; i < scan_.echoes.size(); ++i) {
-      if (scan_.inside[i] == 0) continue;
-      labels.observed[i] = 1;
-      labels.dynamic[i] = isRemembered(scan_.echoes[i]) ? 0 : 1;
-    }
-  }
-
-  bool isRemembered(const Eigen::Vector3f& echo) const;
-  std::vector<Index3> rememberedCells() const;
-  void update();
-
   Grid grid_;
   StreamGuard guard_;
-  GridScan scan_;
-  std::vector<std::uint8_t> dynamic_;
+  EchoLabels judged_;
   std::vector<Object> no_objects_;
   bool is_first_ = true;
+  bool knows_ = false;  ///< the last scan was judged against one before it
   bool watched_ = false;
-  std::vector<Index3> before_;  ///< remembered before the last scan, in its window; only while watched
+  std::vector<Index3> before_, hit_;  ///< of the last scan, in its window; only while watched
 };
-
-// The 3D grids; the 2D grid's own steps follow.
-
-template <class Grid>
-bool PaperDetector<Grid>::isRemembered(const Eigen::Vector3f& echo) const {
-  return grid_.remembers(voxelOf(echo));
-}
-
-template <class Grid>
-std::vector<Index3> PaperDetector<Grid>::rememberedCells() const {
-  return grid_.remembered();
-}
-
-template <class Grid>
-MemoryCells PaperDetector<Grid>::memoryCells() const {
-  MemoryCells cells;
-  const GridWindow& window = grid_.window();
-  const auto inOdom = [&](const Index3& voxel) {
-    return Eigen::Vector3f((window.odomFromGrid() * window.indexToCenter(voxel)).cast<float>());
-  };
-  // Before the scan there were all of these: what was not forgotten was hit, or is in the shadow.
-  for (const Index3& voxel : before_) {
-    if (!grid_.remembers(voxel)) cells.seen_through.push_back(inOdom(voxel));
-    else if (!grid_.isHit(voxel)) cells.shadowed.push_back(inOdom(voxel));
-  }
-  return cells;
-}
-
-template <class Grid>
-void PaperDetector<Grid>::update() {
-  grid_.hit(scan_);
-  grid_.deshadow(scan_);
-  grid_.remember();
-}
-
-template <>
-bool PaperDetector<Grid2d>::isRemembered(const Eigen::Vector3f& echo) const {
-  return grid_.remembers(echo);
-}
-
-template <>
-std::vector<Index3> PaperDetector<Grid2d>::rememberedCells() const {
-  return {};
-}
-
-template <>
-MemoryCells PaperDetector<Grid2d>::memoryCells() const {
-  return {};
-}
-
-template <>
-void PaperDetector<Grid2d>::update() {
-  grid_.resize(scan_);
-}
 
 }  // namespace
 

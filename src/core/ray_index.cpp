@@ -3,118 +3,113 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+
+#include "ray_bins.h"
+#include "simd.h"
 
 namespace donex {
 namespace {
 
-constexpr int kAcross = 512;   // bins across one side of the prism
-constexpr int kUp = 128;       // bins of height
-constexpr float kSteepest = 1.0F;  // tangent of the elevation where the outermost bins begin to collect all the rest
-constexpr float kMargin = 1e-5F;   // covers rounding between a direction and the box it crosses
+constexpr float kSteepest = 1.0F;  // tangent of the elevation where the outermost rows collect all the rest
 
-/// A vector as side `side` sees it: depth along the side's axis, then across, then up.
-Eigen::Vector3f onSide(int side, const Eigen::Vector3f& p) {
-  switch (side) {
-    case 0: return {p.x(), p.y(), p.z()};
-    case 1: return {p.y(), -p.x(), p.z()};
-    case 2: return {-p.x(), -p.y(), p.z()};
-    default: return {-p.y(), p.x(), p.z()};
+struct Projected {
+  float *across, *up, *depth;
+  std::uint32_t* bin;
+};
+
+/// Echoes without a direction (none, or in the sensor itself) get the bin behind the last.
+DONEX_WIDE_LOOPS void project(const Eigen::Vector3f& origin, float row_low, float per_up, const EchoBlock& block,
+                              const Projected& to) {
+  const float ox = origin.x(), oy = origin.y(), oz = origin.z();
+  for (int i = 0; i < EchoBlock::kSize; ++i) {
+    const float dx = block.x[i] - ox, dy = block.y[i] - oy, dz = block.z[i] - oz;
+    const float ax = std::abs(dx), ay = std::abs(dy);
+    const bool along_x = ax >= ay;
+    const float depth = along_x ? ax : ay;
+    const float ahead = along_x ? dx : dy;
+    const float beside = along_x ? dy : -dx;
+    const bool is_level = depth > 0.0F;
+    const float per_depth = 1.0F / (is_level ? depth : 1.0F);
+    // Straight up and down belong to the first side's outermost rows.
+    const float across = (ahead >= 0.0F ? beside : -beside) * per_depth;
+    const float up = is_level ? dz * per_depth : (dz > 0.0F ? kUpright : -kUpright);
+    const int side = (along_x ? 0 : 1) + (ahead >= 0.0F ? 0 : 2);
+    const float column = std::min(std::max((across + 1.0F) * (0.5F * kAcross), 0.0F), kAcross - 1.0F);
+    const float row = std::min(std::max((up - row_low) * per_up, 0.0F), kUp - 1.0F);
+    const bool has_direction = static_cast<int>(depth > 0.0F) | static_cast<int>(dz > 0.0F) | static_cast<int>(dz < 0.0F);
+    // NaN passes through min and max as their first argument: converted only where there is a direction.
+    const int bin = (side * kAcross + static_cast<int>(has_direction ? column : 0.0F)) * kUp +
+                    static_cast<int>(has_direction ? row : 0.0F);
+    to.across[i] = across;
+    to.up[i] = up;
+    to.depth[i] = depth;
+    to.bin[i] = static_cast<std::uint32_t>(has_direction ? bin : kBins);
   }
 }
-
-int sideOf(const Eigen::Vector3f& p) {
-  if (std::abs(p.x()) >= std::abs(p.y())) return p.x() >= 0.0F ? 0 : 2;
-  return p.y() >= 0.0F ? 1 : 3;
-}
-
-int acrossBin(float u) { return std::clamp(static_cast<int>((u + 1.0F) * (0.5F * kAcross)), 0, kAcross - 1); }
-int upBin(float v) {
-  const float bounded = std::clamp(v, -kSteepest, kSteepest);
-  return std::clamp(static_cast<int>((bounded + kSteepest) * (0.5F * kUp / kSteepest)), 0, kUp - 1);
-}
-int binIndex(int side, int u, int v) { return (side * kAcross + u) * kUp + v; }
 
 }  // namespace
 
-int RayIndex::binOf(const Eigen::Vector3f& direction) const {
-  const int side = sideOf(direction);
-  const Eigen::Vector3f p = onSide(side, direction);
-  if (p.x() <= 0.0F) return binIndex(0, 0, p.z() < 0.0F ? 0 : kUp - 1);  // straight up or down
-  return binIndex(side, acrossBin(p.y() / p.x()), upBin(p.z() / p.x()));
+void RayIndex::Rays::resize(std::size_t rays) {
+  across.resize(rays);
+  up.resize(rays);
+  depth.resize(rays);
 }
 
-void RayIndex::build(const Eigen::Vector3f& origin, const std::vector<Eigen::Vector3f>& echoes) {
-  constexpr std::uint32_t kNoBin = std::numeric_limits<std::uint32_t>::max();
-  origin_ = origin;
-  first_.assign(kSides * kAcross * kUp + 1, 0);
-  farthest_.assign(kSides * kAcross * kUp, -1.0F);
-  bin_of_echo_.resize(echoes.size());
-  for (std::size_t i = 0; i < echoes.size(); ++i) {
-    const Eigen::Vector3f direction = echoes[i] - origin;
-    if (!(direction.squaredNorm() > 0.0F)) {  // no echo, or in the sensor itself
-      bin_of_echo_[i] = kNoBin;
-      continue;
-    }
-    const auto bin = static_cast<std::uint32_t>(binOf(direction));
-    bin_of_echo_[i] = bin;
-    ++first_[bin];
-    const float depth = std::max(std::abs(direction.x()), std::abs(direction.y()));
-    farthest_[bin] = std::max(farthest_[bin], depth);
+void RayIndex::begin(const Placement& placement, const std::vector<Eigen::Vector3f>& echoes) {
+  placement_ = placement;
+  echoes_ = &echoes;
+  rows_ = next_rows_;
+  const std::size_t padded = blocksOf(echoes.size()) * EchoBlock::kSize;
+  by_echo_.resize(padded);
+  bin_of_echo_.resize(padded);
+}
+
+void RayIndex::add(std::size_t first, const EchoBlock& block) {
+  const Projected to{by_echo_.across.data() + first, by_echo_.up.data() + first, by_echo_.depth.data() + first,
+                     bin_of_echo_.data() + first};
+  project(placement_.origin, rows_.low, rows_.per_up, block, to);
+}
+
+void RayIndex::finish() {
+  bins_.assign(kBins + 1, Bin{0, -1.0F});
+  const std::size_t rays = bin_of_echo_.size();
+  for (std::size_t i = 0; i < rays; ++i) {
+    Bin& bin = bins_[bin_of_echo_[i]];
+    ++bin.first;
+    bin.farthest = std::max(bin.farthest, by_echo_.depth[i]);
   }
   // Counts become ends; filling backwards turns the ends into starts.
-  std::partial_sum(first_.begin(), first_.end(), first_.begin());
-  rays_.resize(first_.back());
-  for (std::size_t i = echoes.size(); i-- > 0;) {
-    if (bin_of_echo_[i] != kNoBin) rays_[--first_[bin_of_echo_[i]]] = echoes[i];
+  std::uint32_t end = 0;
+  for (Bin& bin : bins_) bin.first = end += bin.first;
+  rays_.resize(rays + kLanes);  // whole registers are read
+  echo_of_ray_.resize(rays);
+  for (std::size_t i = rays; i-- > 0;) {
+    const std::uint32_t ray = --bins_[bin_of_echo_[i]].first;
+    rays_.across[ray] = by_echo_.across[i];
+    rays_.up[ray] = by_echo_.up[i];
+    rays_.depth[ray] = by_echo_.depth[i];
+    echo_of_ray_[ray] = static_cast<std::uint32_t>(i);
   }
+  next_rows_ = rowsOfScan();
 }
 
-/// Shows `visit(bin, nearest)` the bins that a line of sight through the box can lie in, with the
-/// depth the line must reach to touch it, until it returns true.
-template <class Visit>
-bool RayIndex::anyBin(const Eigen::Vector3f& low, const Eigen::Vector3f& high, Visit&& visit) const {
-  for (int side = 0; side < kSides; ++side) {
-    const Eigen::Vector3f a = onSide(side, low), b = onSide(side, high);
-    const Eigen::Vector3f first = a.cwiseMin(b), last = a.cwiseMax(b);
-    const float far_depth = last.x();
-    const float least_across = std::max({first.y(), -last.y(), 0.0F});
-    const bool on_this_side = far_depth >= 0.0F && least_across <= far_depth * (1.0F + kMargin) + kMargin;
-    if (!on_this_side) continue;
-    const float near_depth = std::max({first.x(), least_across, 0.0F}) * (1.0F - kMargin);
-    // Directions spread most at the near face, unless the box does not reach the axis on that flank.
-    const auto lowest = [&](float w) { return w < 0.0F ? w / near_depth : w / far_depth; };
-    const auto highest = [&](float w) { return w > 0.0F ? w / near_depth : w / far_depth; };
-    const bool at_sensor = near_depth <= kMargin;
-    const float u_low = at_sensor ? -1.0F : lowest(first.y()), u_high = at_sensor ? 1.0F : highest(last.y());
-    const float v_low = at_sensor ? -kSteepest : lowest(first.z());
-    const float v_high = at_sensor ? kSteepest : highest(last.z());
-    const auto wider = [](float x, float by) { return x + by * kMargin * (1.0F + std::abs(x)); };
-    const int u_first = acrossBin(std::max(wider(u_low, -1), -1.0F)), u_last = acrossBin(std::min(wider(u_high, 1), 1.0F));
-    const int v_first = upBin(wider(v_low, -1)), v_last = upBin(wider(v_high, 1));
-    for (int u = u_first; u <= u_last; ++u) {
-      for (int v = v_first; v <= v_last; ++v) {
-        if (visit(static_cast<std::size_t>(binIndex(side, u, v)), near_depth)) return true;
-      }
-    }
+RayIndex::Rows RayIndex::rowsOfScan() const {
+  float low = kSteepest, high = -kSteepest;
+  const std::size_t with_direction = bins_.back().first;
+  for (std::size_t ray = 0; ray < with_direction; ++ray) {
+    low = std::min(low, rays_.up[ray]);
+    high = std::max(high, rays_.up[ray]);
   }
-  return false;
+  low = std::max(low, -kSteepest);
+  high = std::min(high, kSteepest);
+  constexpr float kLeastSpan = 0.1F;
+  return low <= high ? Rows{low, kUp / std::max(high - low, kLeastSpan)} : Rows{};
 }
 
-bool RayIndex::seesThrough(const Index3& voxel) const {
-  const Eigen::Vector3f low = voxel.cast<float>() - origin_;
-  const Eigen::Vector3f high = low + Eigen::Vector3f::Ones();
-  return anyBin(low, high, [&](std::size_t bin, float near_depth) {
-    if (farthest_[bin] < near_depth) return false;
-    return std::any_of(rays_.begin() + first_[bin], rays_.begin() + first_[bin + 1],
-                       [&](const Eigen::Vector3f& echo) { return LineOfSight(origin_, echo).crosses(voxel); });
-  });
-}
-
-bool RayIndex::maySeeThrough(const Index3& corner, int edge) const {
-  const Eigen::Vector3f low = corner.cast<float>() - origin_;
-  const Eigen::Vector3f high = low + Eigen::Vector3f::Constant(static_cast<float>(edge));
-  return anyBin(low, high, [&](std::size_t bin, float near_depth) { return farthest_[bin] >= near_depth; });
+std::size_t RayIndex::memoryBytes() const {
+  const auto bytes = [](const Rays& rays) { return 3 * rays.across.capacity() * sizeof(float); };
+  return bytes(by_echo_) + bytes(rays_) + (bin_of_echo_.capacity() + echo_of_ray_.capacity()) * sizeof(std::uint32_t) +
+         bins_.capacity() * sizeof(Bin);
 }
 
 }  // namespace donex

@@ -54,21 +54,17 @@ TEST_P(AgainstOracle, Grid3d) {
   testing::RandomScans scans(c.seed, c.voxel_size, 12.0F);
   oracle::Donex3d oracle(config);
   Grid3d grid(config);
+  EchoLabels labels;
   std::size_t new_echoes = 0;
   for (int k = 0; k < kScans; ++k) {
     const Scan scan = scans.next(kEchoes);
     const oracle::Labels expected = oracle.process(scan);
-    GridScan in_grid;
     grid.shift(scan.odom_from_base);
-    grid.window().enter(scan, in_grid);
-    for (std::size_t i = 0; i < expected.size(); ++i) {
-      const bool is_new = k > 0 && in_grid.inside[i] != 0 && !grid.remembers(voxelOf(in_grid.echoes[i]));
-      ASSERT_EQ(is_new, expected[i] != 0) << "scan " << k << " echo " << i;
-      new_echoes += is_new ? 1U : 0U;
+    grid.take(scan, labels);
+    for (std::size_t i = 0; k > 0 && i < expected.size(); ++i) {
+      ASSERT_EQ(labels.dynamic[i], expected[i]) << "scan " << k << " echo " << i;
+      new_echoes += labels.dynamic[i];
     }
-    grid.hit(in_grid);
-    grid.deshadow(in_grid);
-    grid.remember();
     ASSERT_EQ(memoryOf(grid), oracle.memory()) << "scan " << k;
   }
   EXPECT_GT(new_echoes, 100U);
@@ -106,17 +102,15 @@ TEST_P(AgainstOracle, Grid2d) {
   testing::RandomScans scans(c.seed + 2000, c.voxel_size, 12.0F);
   oracle::Donex2d oracle(config);
   Grid2d grid(config);
+  EchoLabels labels;
   for (int k = 0; k < kScans; ++k) {
     const Scan scan = scans.next(kEchoes);
     const oracle::Labels expected = oracle.process(scan);
-    GridScan in_grid;
     grid.shift(scan.odom_from_base);
-    grid.window().enter(scan, in_grid);
-    for (std::size_t i = 0; i < expected.size(); ++i) {
-      const bool is_new = k > 0 && in_grid.inside[i] != 0 && !grid.remembers(in_grid.echoes[i]);
-      ASSERT_EQ(is_new, expected[i] != 0) << "scan " << k << " echo " << i;
+    grid.take(scan, labels);
+    for (std::size_t i = 0; k > 0 && i < expected.size(); ++i) {
+      ASSERT_EQ(labels.dynamic[i], expected[i]) << "scan " << k << " echo " << i;
     }
-    grid.resize(in_grid);
     const auto ranges = memoryOf(grid);
     ASSERT_EQ(ranges.size(), oracle.memory().size()) << "scan " << k;
     for (const auto& [cell, range] : oracle.memory()) {

@@ -44,16 +44,12 @@ class VoxelShift : public ::testing::TestWithParam<Compensation> {};
 TEST_P(VoxelShift, KeepsContentsWithinOneVoxelIn3d) {
   Grid3d memory(grid(Method::kDonex3d, GetParam()));
   const Scan scan = landmarks();
-  GridScan in_grid;
+  EchoLabels labels;
   memory.shift(Eigen::Isometry3d::Identity());
-  memory.window().enter(scan, in_grid);
-  memory.hit(in_grid);
-  memory.remember();
+  memory.take(scan, labels);
   for (int k = 1; k <= kShifts; ++k) {
     memory.shift(poseAfter(k));
-    GridScan nothing;
-    memory.hit(nothing);
-    memory.remember();
+    memory.take(Scan(), labels);
   }
   const auto voxels = memory.remembered();
   ASSERT_EQ(voxels.size(), scan.echoes.size());
@@ -72,13 +68,12 @@ TEST_P(VoxelShift, KeepsContentsWithinOneVoxelIn3d) {
 TEST_P(VoxelShift, KeepsRangesWithinOneVoxelIn2d) {
   Grid2d memory(grid(Method::kDonex2d, GetParam()));
   const Scan scan = landmarks();
-  GridScan in_grid;
+  EchoLabels labels;
   memory.shift(Eigen::Isometry3d::Identity());
-  memory.window().enter(scan, in_grid);
-  memory.resize(in_grid);
+  memory.take(scan, labels);
   for (int k = 1; k <= kShifts; ++k) {
     memory.shift(poseAfter(k));
-    memory.resize(GridScan{});
+    memory.take(Scan(), labels);
   }
   const GridWindow& window = memory.window();
   int ranges = 0;
@@ -100,17 +95,13 @@ TEST_P(VoxelShift, KeepsRangesWithinOneVoxelIn2d) {
 
 TEST_P(VoxelShift, ForgetsWhatLeavesTheWindow) {
   Grid3d memory(grid(Method::kDonex3d, GetParam()));
-  GridScan in_grid;
+  EchoLabels labels;
   memory.shift(Eigen::Isometry3d::Identity());
-  memory.window().enter(landmarks(), in_grid);
-  memory.hit(in_grid);
-  memory.remember();
+  memory.take(landmarks(), labels);
   memory.shift(Eigen::Isometry3d(Eigen::Translation3d(200, 0, 0)));
   EXPECT_TRUE(memory.remembered().empty());
-  memory.remember();
+  memory.take(Scan(), labels);
   memory.shift(Eigen::Isometry3d::Identity());
-  GridScan nothing;
-  memory.hit(nothing);
   EXPECT_TRUE(memory.remembered().empty()) << "what was forgotten does not come back";
 }
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "donex/core/brick_mask.h"
+#include "donex/core/brick_layout.h"
 #include "donex/core/grid_window.h"
 
 namespace donex {

@@ -37,14 +37,20 @@ class CellLayout {
   std::uint32_t slotOf(int x, int y) const {
     return static_cast<std::uint32_t>(wrapped(y + shift_y_, depth_) * width_ + wrapped(x + shift_x_, width_));
   }
+  /// The slots of a block's inside echoes; the others get the slot behind the last.
+  void locate(const EchoBlock& block, BlockSlots& result) const;
+
   Index3 cellOf(std::uint32_t slot) const {
     const int i = static_cast<int>(slot);
     return {modulo(i % width_ - shift_x_, width_), modulo(i / width_ - shift_y_, depth_), 0};
   }
 
+  /// Added to a height in the window, it gives heightOf [voxels].
+  float lift() const { return static_cast<float>(lift_); }
+
   /// Height [voxels] of a point of the window above the window's floor in the first scan: it stays
   /// comparable while the window scrolls up and down.
-  float heightOf(const Eigen::Vector3f& in_window) const { return in_window.z() + static_cast<float>(lift_); }
+  float heightOf(const Eigen::Vector3f& in_window) const { return in_window.z() + lift(); }
 
   /// Moves the window; `forget(slot)` is called for every cell that has just entered it.
   template <class Forget>

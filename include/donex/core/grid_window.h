@@ -5,6 +5,7 @@
 
 #include "donex/core/config.h"
 #include "donex/core/detector.h"
+#include "donex/core/echo_block.h"
 #include "donex/core/line_of_sight.h"
 #include "donex/core/scan.h"
 
@@ -36,6 +37,8 @@ class GridWindow {
   /// Places the window for a scan taken at this vehicle pose.
   void moveTo(const Eigen::Isometry3d& odom_from_base);
 
+  /// How a scan lies in the window. Call after moveTo with the scan's own pose.
+  Placement placementOf(const Scan& scan) const;
   /// Gives every echo its place. Call after moveTo with the scan's own pose.
   void enter(const Scan& scan, GridScan& result) const;
 
@@ -70,6 +73,8 @@ class GridWindow {
   Eigen::Isometry3d grid_from_base_ = Eigen::Isometry3d::Identity();
 };
 
+/// Centres of voxels of the window, each once, odometry frame [m].
+std::vector<Eigen::Vector3f> cellCenters(const GridWindow& window, std::vector<Index3> voxels);
 /// Centres of the voxels that hold a marked echo, each once, odometry frame [m]. `marked`: one an echo.
 std::vector<Eigen::Vector3f> cellCenters(const GridWindow& window, const GridScan& scan,
                                          const std::vector<std::uint8_t>& marked);

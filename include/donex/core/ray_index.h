@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "donex/core/echo_block.h"
 #include "donex/core/line_of_sight.h"
 
 namespace donex {
@@ -12,34 +13,72 @@ namespace donex {
 /// around the sensor (a unit square in x, y): a bin is a strip of one of its four sides times a
 /// strip of height. No angle is ever computed, and the projection of a box is bounded by that of
 /// its corners, so a box finds all lines of sight that can cross it, and few others.
+///
+/// Most questions are decided in the projection, in single precision with a margin for its rounding; the few within
+/// the margin are put to LineOfSight. So every answer is that of the traversal.
 class RayIndex {
  public:
-  /// Takes the echoes of a scan, window coordinates [voxels]; non-finite ones have no line of sight.
-  void build(const Eigen::Vector3f& origin, const std::vector<Eigen::Vector3f>& echoes);
+  /// Begins a scan: where it lies, and its echoes in the sensor's frame, which must stay until the last question.
+  void begin(const Placement& placement, const std::vector<Eigen::Vector3f>& echoes);
+  /// Takes a block of the scan, whose first echo is number `first`. Different blocks may be taken at the same time.
+  void add(std::size_t first, const EchoBlock& block);
+  /// All blocks are there: sorts. Questions may be asked from now on, also at the same time.
+  void finish();
 
-  /// True where some line of sight crosses `voxel` before its own echo's voxel.
-  bool seesThrough(const Index3& voxel) const;
+  /// Those of `candidates` (bits of the 4 x 4 x 4 voxels from `corner` upwards, as BrickLayout numbers them) that some
+  /// line of sight crosses before its own echo's voxel.
+  std::uint64_t seenThrough(std::uint64_t candidates, const Index3& corner) const;
 
-  /// False only where no line of sight crosses any voxel of the cube with lowest voxel `corner`.
-  bool maySeeThrough(const Index3& corner, int edge) const;
+  /// Makes the next scan's bins as if no scan had been before.
+  void reset() { next_rows_ = Rows{}; }
 
-  std::size_t memoryBytes() const {
-    return (first_.capacity() + bin_of_echo_.capacity()) * sizeof(std::uint32_t) +
-           rays_.capacity() * sizeof(Eigen::Vector3f) + farthest_.capacity() * sizeof(float);
-  }
+  std::size_t memoryBytes() const;
 
  private:
   static constexpr int kSides = 4;
 
-  template <class Visit>
-  bool anyBin(const Eigen::Vector3f& low, const Eigen::Vector3f& high, Visit&& visit) const;
-  int binOf(const Eigen::Vector3f& direction) const;
+  /// Lines of sight on their sides of the prism, coordinate by coordinate.
+  struct Rays {
+    std::vector<float> across, up;  ///< direction: tangents
+    std::vector<float> depth;       ///< of the echo, along the side's axis [voxels]
 
-  Eigen::Vector3f origin_ = Eigen::Vector3f::Zero();
-  std::vector<std::uint32_t> first_;     ///< bins + 1: where each bin's rays start in rays_
-  std::vector<Eigen::Vector3f> rays_;    ///< echoes, by bin
-  std::vector<float> farthest_;          ///< bins: largest distance along the side's axis [voxels]
+    void resize(std::size_t rays);
+  };
+  struct Bin {
+    std::uint32_t first;  ///< where its rays begin in rays_
+    float farthest;       ///< largest depth [voxels]; negative where it has no ray
+  };
+  /// Heights are binned over what the scan before covered: sensors look up and down differently far.
+  struct Rows {
+    float low = -1.0F, per_up = 64.0F;
+  };
+  /// A box as the sensor sees it on one side of the prism.
+  struct Shadow;
+  /// A brick that lies on one side of the prism alone, well ahead of the sensor.
+  struct BrickAhead;
+  enum class Crossing { kNo, kYes, kUnsure };
+
+  bool shadowOn(int side, const Eigen::Vector3f& low, const Eigen::Vector3f& high, Shadow& shadow) const;
+  void findBins(Shadow& shadow) const;
+  static Shadow shadowOf(const BrickAhead& brick, const Index3& low, int edge);
+  bool anyRayReaches(const Shadow& shadow) const;
+  bool anyRayCrosses(const Shadow& shadow, const Index3& voxel) const;
+  bool seesThrough(const Index3& voxel) const;
+  bool maySeeThrough(const Index3& corner, int edge) const;
+  std::uint64_t seenThrough(std::uint64_t candidates, const BrickAhead& brick, const Index3& corner) const;
+  Crossing judge(std::uint32_t ray, const Shadow& box) const;
+  bool crosses(std::uint32_t ray, const Index3& voxel) const;
+  int rowOf(float up) const;
+  Rows rowsOfScan() const;
+
+  Placement placement_;
+  const std::vector<Eigen::Vector3f>* echoes_ = nullptr;
+  Rows rows_, next_rows_;
+  Rays by_echo_;
   std::vector<std::uint32_t> bin_of_echo_;
+  std::vector<Bin> bins_;
+  Rays rays_;  ///< by bin
+  std::vector<std::uint32_t> echo_of_ray_;
 };
 
 }  // namespace donex

@@ -28,6 +28,11 @@ struct EchoLabels {
   std::vector<std::uint8_t> dynamic;   ///< 1 dynamic, 0 static
   std::vector<std::uint8_t> observed;  ///< 1 where the grid had evidence to judge the echo
 
+  /// Room for a scan's labels, whose values are left open.
+  void resize(std::size_t echoes) {
+    dynamic.resize(echoes);
+    observed.resize(echoes);
+  }
   void assign(std::size_t echoes) {
     dynamic.assign(echoes, 0);
     observed.assign(echoes, 0);

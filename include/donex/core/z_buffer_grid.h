@@ -14,20 +14,31 @@ class ZBufferGrid : public Grid3d {
  public:
   explicit ZBufferGrid(const Config& config) : Grid3d(config) {}
 
-  /// Forgets what is remembered, not hit now, and nearer than the surface of its direction by more than the half
-  /// diagonal of a voxel.
-  void deshadow(const GridScan& scan) {
+  /// As Grid3d::take, but forgets what is remembered, not hit now, and nearer than the surface of its direction by more
+  /// than the half diagonal of a voxel.
+  void take(const Scan& scan, EchoLabels& labels) {
+    const Placement placement = window().placementOf(scan);
+    hit(scan, placement, labels);
     image_.clear();
-    for (const Eigen::Vector3f& echo : scan.echoes) image_.add(echo - scan.origin);
-    deshadowWhere([&](const Index3& voxel) {
-      const Eigen::Vector3f center = voxel.cast<float>() + Eigen::Vector3f::Constant(0.5F) - scan.origin;
-      return image_.rangeTowards(center) > center.norm() + kHalfDiagonal;
+    for (const Eigen::Vector3f& echo : scan.echoes) image_.add(placement.toWindow(echo) - placement.origin);
+    remember([&](std::uint64_t candidates, const Index3& corner) {
+      std::uint64_t seen = 0;
+      for (; candidates != 0; candidates &= candidates - 1) {
+        const int bit = __builtin_ctzll(candidates);
+        if (seesThrough(BrickLayout::voxelOfBit(corner, bit), placement.origin)) seen |= std::uint64_t{1} << bit;
+      }
+      return seen;
     });
   }
 
   std::size_t memoryBytes() const { return Grid3d::memoryBytes() + image_.memoryBytes(); }
 
  private:
+  bool seesThrough(const Index3& voxel, const Eigen::Vector3f& origin) const {
+    const Eigen::Vector3f center = voxel.cast<float>() + Eigen::Vector3f::Constant(0.5F) - origin;
+    return image_.rangeTowards(center) > center.norm() + kHalfDiagonal;
+  }
+
   static constexpr float kHalfDiagonal = 0.8660254F;  // of a voxel [voxels]
 
   RangeImage image_;

@@ -1,4 +1,4 @@
-// A set of voxels as bits: bricks of 4 x 4 x 4 voxels, one 64-bit word each, in a window that wraps around.
+// Voxels in bricks of 4 x 4 x 4, a bit each of a 64-bit word, in a window that wraps around.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace donex {
 
-/// The place of a voxel in a BrickMask: its brick's slot and its bit there.
+/// The place of a voxel: its brick's slot and its bit there.
 struct BrickBit {
   std::uint32_t slot;
   std::uint32_t bit;
@@ -33,6 +33,9 @@ class BrickLayout {
     const int bit = (in_window.x() & 3) | (in_window.y() & 3) << 2 | (in_window.z() & 3) << 4;
     return {slotOf(in_window.x() >> 2, in_window.y() >> 2, in_window.z() >> 2), static_cast<std::uint32_t>(bit)};
   }
+
+  /// The places of a block's inside echoes; the others get the slot behind the last.
+  void locate(const EchoBlock& block, BlockSlots& result) const;
 
   /// Lowest voxel of the brick in `slot`, in the window.
   Index3 cornerOf(std::uint32_t slot) const {
@@ -60,53 +63,6 @@ class BrickLayout {
 
   Index3 bricks_;
   Index3 shift_;
-};
-
-/// The bits of a set of voxels, and which bricks hold any.
-class BrickMask {
- public:
-  explicit BrickMask(std::size_t slots) : words_(slots, 0) {}
-
-  std::uint64_t word(std::uint32_t slot) const { return words_[slot]; }
-  bool test(BrickBit at) const { return (words_[at.slot] >> at.bit & 1U) != 0; }
-
-  /// Adds a voxel; false where it was there already.
-  bool set(BrickBit at) {
-    const std::uint64_t mask = std::uint64_t{1} << at.bit;
-    const std::uint64_t before = words_[at.slot];
-    if (before == 0) used_.push_back(at.slot);
-    words_[at.slot] = before | mask;
-    return (before & mask) == 0;
-  }
-
-  /// Adds the voxels of a brick.
-  void add(std::uint32_t slot, std::uint64_t word) {
-    if (words_[slot] == 0 && word != 0) used_.push_back(slot);
-    words_[slot] |= word;
-  }
-
-  void clear() {
-    for (const std::uint32_t slot : used_) words_[slot] = 0;
-    used_.clear();
-  }
-
-  /// Shows `change(slot, word)` every used brick; what it returns is the brick's new word.
-  template <class Change>
-  void transform(Change&& change) {
-    std::size_t kept = 0;
-    for (const std::uint32_t slot : used_) {
-      words_[slot] = change(slot, words_[slot]);
-      if (words_[slot] != 0) used_[kept++] = slot;
-    }
-    used_.resize(kept);
-  }
-
-  const std::vector<std::uint32_t>& used() const { return used_; }
-  std::size_t bytes() const { return words_.capacity() * sizeof(words_[0]) + used_.capacity() * sizeof(used_[0]); }
-
- private:
-  std::vector<std::uint64_t> words_;
-  std::vector<std::uint32_t> used_;  ///< slots of the words that are not zero, each once
 };
 
 }  // namespace donex

@@ -1,0 +1,87 @@
+#include "measure.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+
+namespace donex::benchmark {
+namespace {
+
+constexpr std::size_t kWarmUp = 2;
+
+double cpuMilliseconds() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+}
+
+double wallMilliseconds() {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double quantile(std::vector<double> values, double fraction) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  const double rank = std::ceil(fraction * static_cast<double>(values.size()));
+  return values[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
+}
+
+struct Times {
+  std::vector<double> cpu, wall;  ///< one a scan [ms]
+
+  template <class Work>
+  void add(Work&& work) {
+    const double wall_start = wallMilliseconds(), cpu_start = cpuMilliseconds();
+    work();
+    cpu.push_back(cpuMilliseconds() - cpu_start);
+    wall.push_back(wallMilliseconds() - wall_start);
+  }
+  Measured summary() const { return {quantile(cpu, 0.5), quantile(cpu, 0.99), quantile(cpu, 0.0), quantile(wall, 0.5)}; }
+};
+
+}  // namespace
+
+Measured measure(const Scans& scans, int rounds, const std::function<void(const Scan&)>& work) {
+  Times times;
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t i = 0; i < kWarmUp; ++i) work(scans[i]);
+    for (std::size_t i = kWarmUp; i < scans.size(); ++i) times.add([&] { work(scans[i]); });
+  }
+  return times.summary();
+}
+
+Measured timeDetector(::benchmark::State& state, Detector& detector, const Scans& scans) {
+  Times times;
+  EchoLabels labels;
+  std::size_t next = scans.size();
+  for (auto _ : state) {
+    if (next == scans.size()) {
+      detector.reset();
+      for (next = 0; next < kWarmUp; ++next) detector.process(scans[next], labels);
+    }
+    times.add([&] { detector.process(scans[next], labels); });
+    ++next;
+    state.SetIterationTime(1e-3 * times.wall.back());
+  }
+  const Measured measured = times.summary();
+  state.counters["median_ms"] = measured.median;
+  state.counters["p99_ms"] = measured.p99;
+  state.counters["least_ms"] = measured.least;
+  state.counters["wall_ms"] = measured.wall;
+  state.counters["memory_MB"] = 1e-6 * static_cast<double>(detector.memoryBytes());
+  state.counters["echoes"] = static_cast<double>(scans.back().echoes.size());
+  return measured;
+}
+
+void compare(::benchmark::State& state, const Measured& measured, const Measured& floor, const Measured* naive) {
+  state.counters["floor_ms"] = floor.median;
+  state.counters["least_of_floor"] = measured.least / floor.least;
+  state.counters["of_floor"] = measured.median / floor.median;
+  if (naive == nullptr) return;
+  state.counters["naive_ms"] = naive->median;
+  state.counters["least_naive_over_this"] = naive->least / measured.least;
+  state.counters["naive_over_this"] = naive->median / measured.median;
+}
+
+}  // namespace donex::benchmark
