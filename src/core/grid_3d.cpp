@@ -67,14 +67,14 @@ Grid3d::Brick& Grid3d::brickAt(std::uint32_t slot, const Index3& in_window) {
 }
 
 void Grid3d::take(const Scan& scan, EchoLabels& labels) {
-  const Placement placement = window_.placementOf(scan);
-  rays_.begin(placement, scan.echoes);
-  hit(scan, placement, labels);
+  hit(scan, labels);
   rays_.finish();
   remember([&](std::uint64_t candidates, const Index3& corner) { return rays_.seenThrough(candidates, corner); });
 }
 
-void Grid3d::hit(const Scan& scan, const Placement& placement, EchoLabels& labels) {
+void Grid3d::hit(const Scan& scan, EchoLabels& labels) {
+  const Placement placement = window_.placementOf(scan);
+  rays_.begin(placement, scan.echoes);
   labels.resize(scan.echoes.size());
   hit_voxels_.clear();
   no_echoes_.clear();

@@ -34,7 +34,7 @@ class Grid3d {
 
  protected:
   /// The first half of take: marks H_k and judges.
-  void hit(const Scan& scan, const Placement& placement, EchoLabels& labels);
+  void hit(const Scan& scan, EchoLabels& labels);
   /// The second: M_k = H_k u { v in M' \ H_k : v not seen through }. `seen(candidates, corner)` says which of a brick's
   /// candidates are, as bits of the voxels from `corner` upwards.
   template <class Seen>

@@ -17,15 +17,16 @@ class ZBufferGrid : public Grid3d {
   /// As Grid3d::take, but forgets what is remembered, not hit now, and nearer than the surface of its direction by more
   /// than the half diagonal of a voxel.
   void take(const Scan& scan, EchoLabels& labels) {
-    const Placement placement = window().placementOf(scan);
-    hit(scan, placement, labels);
+    hit(scan, labels);
+    GridScan in_grid;
+    window().enter(scan, in_grid);
     image_.clear();
-    for (const Eigen::Vector3f& echo : scan.echoes) image_.add(placement.toWindow(echo) - placement.origin);
+    for (const Eigen::Vector3f& echo : in_grid.echoes) image_.add(echo - in_grid.origin);
     remember([&](std::uint64_t candidates, const Index3& corner) {
       std::uint64_t seen = 0;
       for (; candidates != 0; candidates &= candidates - 1) {
         const int bit = __builtin_ctzll(candidates);
-        if (seesThrough(BrickLayout::voxelOfBit(corner, bit), placement.origin)) seen |= std::uint64_t{1} << bit;
+        if (seesThrough(BrickLayout::voxelOfBit(corner, bit), in_grid.origin)) seen |= std::uint64_t{1} << bit;
       }
       return seen;
     });
