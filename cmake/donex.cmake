@@ -5,6 +5,13 @@ endif()
 set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O3 -g -DNDEBUG")
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 
+# Sanitizers for everything that is built here (scripts/sanitize, scripts/fuzz): the first finding ends a program.
+set(DONEX_SANITIZE "" CACHE STRING "Sanitizers, as address,undefined or thread")
+if(DONEX_SANITIZE)
+  add_compile_options(-fsanitize=${DONEX_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
+  add_link_options(-fsanitize=${DONEX_SANITIZE})
+endif()
+
 # donex_own_code(target): C++17, warnings are errors, public headers under include/.
 # No floating-point contraction: the fast code must round exactly as the oracle does, on every machine.
 function(donex_own_code target)

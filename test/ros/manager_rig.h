@@ -13,6 +13,7 @@
 #include <nodelet/loader.h>
 #include <ros/ros.h>
 #include <sensor_msgs/PointCloud2.h>
+#include <tf2_msgs/TFMessage.h>
 #include <tf2_ros/static_transform_broadcaster.h>
 
 #include "ros/pipeline_rig.h"

@@ -203,7 +203,7 @@ TEST_F(Manager, changesWhileDataFlowsLoseNoScan) {
 TEST_F(Manager, anOverloadDropsTheOldestAndCountsThem) {
   load();
   for (int i = 0; i < 60; ++i) sendCloud(100.0 + 0.1 * i);
-  ASSERT_TRUE(waitForDiagnostic("dropped: queue full", "50"));
+  ASSERT_TRUE(waitForDiagnostic("dropped: queue full", std::to_string(60 - NodeConfig().queue_size)));
   // Of those that wait each is labelled or counted, whether the odometry comes before their time is up or not.
   for (int i = 0; i < 60; ++i) sendOdometry(100.0 + 0.1 * i);
   ASSERT_TRUE(waitForDiagnostic("clouds waiting", "0"));

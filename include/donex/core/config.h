@@ -92,7 +92,7 @@ struct MotionConfig {
   std::string fixed_frame = "odom";
   std::string base_frame = "base_link";
   double max_extrapolation = 0.02;  // [s]
-  double odometry_timeout = 0.5;    // [s]
+  double odometry_timeout = 0.6;    // [s]
   bool deskew = true;
 };
 
@@ -105,7 +105,7 @@ struct CloudConfig {
 
 /// What the node does beside labelling.
 struct NodeConfig {
-  int queue_size = 10;
+  int queue_size = 12;
   bool markers = true;
   bool marker_cells = true;
   bool marker_objects = true;

@@ -1,0 +1,15 @@
+// Any bytes as a configuration file: a configuration without faults, or a DataError.
+#include <cstdlib>
+
+#include "donex/io/config_file.h"
+#include "fuzz/input_file.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const auto file = donex::fuzz::folder() / "config.yaml";
+  donex::fuzz::writeFile(file, data, size);
+  try {
+    if (!donex::readConfigFile(file).faults().empty()) std::abort();
+  } catch (const donex::DataError&) {
+  }
+  return 0;
+}
