@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 namespace donex {
@@ -165,9 +166,37 @@ Settings readMap(const YAML::Node& map, const std::string& source, Faults& fault
   return settings;
 }
 
-std::vector<YAML::Node> parseFile(const std::string& text, const std::string& source) {
+/// Counts documents, and looks at nothing in them.
+class DocumentCounter : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark&) override { ++documents; }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+
+  int documents = 0;
+};
+
+/// YAML::LoadAll never ends for some texts that are no YAML (as ",a"): it finds document after document in them.
+bool holdsSeveralDocuments(const std::string& text) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  DocumentCounter counter;
+  while (counter.documents < 2 && parser.HandleNextDocument(counter)) {
+  }
+  return counter.documents > 1;
+}
+
+/// Null where there is nothing but comments.
+YAML::Node parseFile(const std::string& text, const std::string& source) {
   try {
-    return YAML::LoadAll(text);
+    if (holdsSeveralDocuments(text)) throw DataError(source + ": holds more than one YAML document");
+    return YAML::Load(text);
   } catch (const YAML::Exception& error) {
     const std::string where = error.mark.is_null() ? source : lineOf(source, error.mark);
     throw DataError(fmt::format("{}: is not YAML: {}", where, error.msg));
@@ -199,15 +228,14 @@ std::string readText(const std::filesystem::path& file) {
 
 Config readConfigFile(const std::filesystem::path& file) {
   const std::string source = file.string();
-  const auto documents = parseFile(readText(file), source);
-  if (documents.size() > 1) throw DataError(source + ": holds more than one YAML document");
+  const YAML::Node document = parseFile(readText(file), source);
   Config config;
-  if (documents.empty() || documents.front().IsNull()) return config;
-  if (!documents.front().IsMap()) {
-    throw DataError(lineOf(source, documents.front().Mark()) + ": must be a map of parameter names to values");
+  if (!document.IsDefined() || document.IsNull()) return config;
+  if (!document.IsMap()) {
+    throw DataError(lineOf(source, document.Mark()) + ": must be a map of parameter names to values");
   }
   Faults faults;
-  Settings settings = readMap(documents.front(), source, faults);
+  Settings settings = readMap(document, source, faults);
   apply(settings, config, source, faults);
   faults.throwIfAny();
   return config;
