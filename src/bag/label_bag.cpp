@@ -1,42 +1,45 @@
 #include "donex/bag/label_bag.h"
 
+#include <algorithm>
+#include <memory>
 #include <set>
+#include <stdexcept>
 
 #include <fmt/format.h>
 #include <rosbag/view.h>
 #include <tf2_msgs/TFMessage.h>
 
 #include "donex/bag/bag_file.h"
+#include "donex/core/whole_drive.h"
 #include "topics.h"
 
 namespace donex {
 namespace fs = std::filesystem;
 namespace {
 
-/// Feeds a bag's messages to the pipeline as the node gets them, and adds what comes out to the copy.
+/// Feeds a bag's messages to the pipeline as the node gets them, and hands on what comes out.
 class Labeler {
  public:
-  Labeler(const LabelBagOptions& options, rosbag::Bag& out, LabelBagSummary& summary)
-      : labeled_topic_(absoluteTopic(options.labeled)),
-        out_(out),
-        summary_(summary),
-        pipeline_(options.config, tf_, events()) {}
+  Labeler(const LabelBagOptions& options, const LabelBagSink& sink, LabelBagSummary& summary,
+          std::shared_ptr<Detector> detector)
+      : sink_(sink), summary_(summary), pipeline_(options.config, tf_, events(), std::move(detector)) {}
 
+  void beginPart(std::size_t part) { part_ = part; }
   void add(const rosbag::MessageInstance& message);
   void finish();
 
  private:
   PipelineEvents events();
-  void write(const LabeledScan& scan);
+  void take(const LabeledScan& scan);
   void remark(const std::string& kind, const std::string& text);
   void addTransforms(const rosbag::MessageInstance& message, bool are_static);
   void feed(const rosbag::MessageInstance& message);
 
-  std::string labeled_topic_;
-  rosbag::Bag& out_;
+  const LabelBagSink& sink_;
   LabelBagSummary& summary_;
   std::set<std::string> remarked_;
   ros::Time now_;
+  std::size_t part_ = 0;
   tf2::BufferCore tf_;
   Pipeline pipeline_;  // last: it uses the others
 };
@@ -57,7 +60,7 @@ typename Message::ConstPtr parse(const rosbag::MessageInstance& message) {
 
 PipelineEvents Labeler::events() {
   PipelineEvents events;
-  events.labeled = [this](const LabeledScan& scan) { write(scan); };
+  events.labeled = [this](const LabeledScan& scan) { take(scan); };
   events.dropped = [this](DropReason reason, const std::string& text) {
     remark(fmt::format("clouds dropped, {}", describe(reason)), text);
   };
@@ -73,10 +76,10 @@ void Labeler::remark(const std::string& kind, const std::string& text) {
   if (remarked_.insert(kind).second) summary_.remarks.push_back(kind + ", first: " + text);
 }
 
-void Labeler::write(const LabeledScan& scan) {
+void Labeler::take(const LabeledScan& scan) {
   summary_.times.push_back(scan.processing_time);
   summary_.echoes += scan.labels.dynamic.size();
-  out_.write(labeled_topic_, now_, *labelCloud(*scan.cloud, scan.layout, scan.labels));
+  sink_(scan, now_, part_);
 }
 
 void Labeler::addTransforms(const rosbag::MessageInstance& message, bool are_static) {
@@ -122,7 +125,6 @@ void requireLabels(const LabelBagSummary& summary, const std::string& file) {
 
 LabelBagSummary chooseTopics(rosbag::View& view, const LabelBagOptions& options, const std::string& file) {
   LabelBagSummary summary;
-  requireNewTopic(view, options.labeled, file);
   summary.points = chooseTopic(view, options.points, "sensor_msgs/PointCloud2", file, "--points");
   const OdometrySource source = options.config.motion.source;
   const bool needs_odometry = source == OdometrySource::kPose || source == OdometrySource::kTwist;
@@ -130,27 +132,108 @@ LabelBagSummary chooseTopics(rosbag::View& view, const LabelBagOptions& options,
   return summary;
 }
 
+/// The parts of a recording, open.
+class Recording {
+ public:
+  explicit Recording(const BagParts& files) : files_(files) {
+    for (const fs::path& file : files) {
+      openBag(file, *bags_.emplace_back(std::make_unique<rosbag::Bag>()));
+      all_.addQuery(*bags_.back());
+      views_.push_back(std::make_unique<rosbag::View>(*bags_.back()));
+      if (views_.size() > 1) requireSuccessor(views_.size() - 1);
+    }
+  }
+
+  std::size_t parts() const { return bags_.size(); }
+  rosbag::View& part(std::size_t i) { return *views_[i]; }
+  rosbag::View& all() { return all_; }
+  std::string name(std::size_t part = 0) const { return files_[part].string(); }
+
+ private:
+  void requireSuccessor(std::size_t part) {
+    constexpr double kOverlap = 1.0, kGap = 10.0;  // [s] what a recorder splits has neither
+    if (views_[part]->size() == 0 || views_[part - 1]->size() == 0) return;
+    const double gap = (views_[part]->getBeginTime() - views_[part - 1]->getEndTime()).toSec();
+    if (gap >= -kOverlap && gap <= kGap) return;
+    throw DataError(fmt::format("{}: begins {:.1f} s after {} ends: they are no parts of one recording", name(part), gap,
+                                name(part - 1)));
+  }
+
+  BagParts files_;
+  std::vector<std::unique_ptr<rosbag::Bag>> bags_;
+  std::vector<std::unique_ptr<rosbag::View>> views_;
+  rosbag::View all_;
+};
+
+/// One time through the recording. Throws DataError that tells where.
+void pass(Recording& recording, Labeler& labeler, LabelBagSummary& summary, const std::function<void()>& progress) {
+  std::size_t part = 0;
+  try {
+    for (; part < recording.parts(); ++part) {
+      labeler.beginPart(part);
+      for (const rosbag::MessageInstance& message : recording.part(part)) {
+        labeler.add(message);
+        progress();
+      }
+    }
+    labeler.finish();
+  } catch (const std::exception& error) {
+    throw DataError(fmt::format("{}: after {} messages: {}", recording.name(std::min(part, recording.parts() - 1)),
+                                summary.messages, error.what()));
+  }
+}
+
 }  // namespace
 
-LabelBagSummary labelBag(const fs::path& in, const fs::path& out, const LabelBagOptions& options,
+LabelBagSummary judgeBag(const BagParts& in, const LabelBagOptions& options, const LabelBagSink& sink,
                          const LabelBagProgress& progress) {
-  rosbag::Bag input;
-  openBag(in, input);
-  rosbag::View view(input);
-  LabelBagSummary summary = chooseTopics(view, options, in.string());
-  BagWriter output(out, in);
-  Labeler labeler(options, output.bag(), summary);
-  try {
-    for (const rosbag::MessageInstance& message : view) {
-      labeler.add(message);
-      progress(summary.messages, view.size());
-    }
-  } catch (const std::exception& error) {
-    throw DataError(fmt::format("{}: after {} messages: {}", in.string(), summary.messages, error.what()));
+  Recording recording(in);
+  LabelBagSummary topics = chooseTopics(recording.all(), options, recording.name());
+  const std::size_t messages = recording.all().size();
+  if (messages != 0) topics.duration = (recording.all().getEndTime() - recording.all().getBeginTime()).toSec();
+  std::shared_ptr<WholeDriveDetector> whole;
+  if (needsWholeDrive(options.config.method)) whole = makeWholeDriveDetector(options.config);
+  const std::size_t passes = whole == nullptr ? 1U : static_cast<std::size_t>(whole->passes());
+  const LabelBagSink no_sink = [](const LabeledScan&, const ros::Time&, std::size_t) {};
+  LabelBagSummary summary;
+  std::size_t done = 0;
+  do {
+    summary = topics;
+    const bool counts = whole == nullptr || whole->isLastPass();
+    std::shared_ptr<Detector> detector = whole;
+    if (detector == nullptr) detector = makeDetector(options.config);
+    Labeler labeler(options, counts ? sink : no_sink, summary, detector);
+    pass(recording, labeler, summary, [&] { progress(++done, passes * messages); });
+  } while (whole != nullptr && whole->nextPass());
+  requireLabels(summary, recording.name());
+  return summary;
+}
+
+LabelBagSummary labelBag(const BagParts& in, const BagParts& out, const LabelBagOptions& options,
+                         const LabelBagProgress& progress) {
+  if (in.empty() || in.size() != out.size()) throw std::invalid_argument("a bag has no output, or an output no bag");
+  {
+    Recording recording(in);  // faults before the first copy
+    requireNewTopic(recording.all(), options.labeled, recording.name());
+    chooseTopics(recording.all(), options, recording.name());
   }
-  labeler.finish();
-  requireLabels(summary, in.string());
-  output.commit();
+  const std::string topic = absoluteTopic(options.labeled);
+  std::size_t writing = 0;
+  auto writer = std::make_unique<BagWriter>(out[0], in[0]);
+  const auto advance = [&](std::size_t part) {
+    while (writing < part) {
+      writer->commit();
+      ++writing;
+      writer = std::make_unique<BagWriter>(out[writing], in[writing]);
+    }
+  };
+  const auto write = [&](const LabeledScan& scan, const ros::Time& now, std::size_t part) {
+    advance(part);
+    writer->bag().write(topic, now, *labelCloud(*scan.cloud, scan.layout, scan.labels));
+  };
+  LabelBagSummary summary = judgeBag(in, options, write, progress);
+  advance(out.size() - 1);
+  writer->commit();
   return summary;
 }
 

@@ -66,17 +66,18 @@ SequenceComparison compareOnSequence(const SequenceReader& sequence, std::size_t
     comparison.predictions.push_back({name, labels, Evaluation(), readRunFigures(labels), Faults()});
   }
   const ObjectSpeeds speeds(sequence);
-  std::size_t most_moving = 0, most_moving_scan = scans;
+  std::pair<bool, std::size_t> best{false, 0};  // in the second half, moving echoes
+  std::optional<std::size_t> best_scan;
   for (std::size_t i = 0; i < scans; ++i) {
     if (sequence.hasLabels(i) && Evaluation().scores(i)) {
       const Labels truth = sequence.labels(i);
       scoreScan(sequence, i, speeds, truth, comparison.predictions);
-      const auto moving = static_cast<std::size_t>(std::count_if(truth.begin(), truth.end(), isMoving));
-      if (moving > most_moving || most_moving_scan == scans) most_moving = moving, most_moving_scan = i;
+      const std::pair own(2 * i >= scans, static_cast<std::size_t>(std::count_if(truth.begin(), truth.end(), isMoving)));
+      if (!best_scan || own > best) best = own, best_scan = i;
     }
     progress();
   }
-  if (most_moving_scan < scans) comparison.view = viewOf(sequence, most_moving_scan, comparison.predictions);
+  if (best_scan) comparison.view = viewOf(sequence, *best_scan, comparison.predictions);
   return comparison;
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "donex/bag/label_bag.h"
+#include "donex/io/comparison.h"
 #include "program.h"
 
 namespace donex {
@@ -11,10 +12,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void requireOtherFile(const std::string& in, const std::string& out) {
-  std::error_code ignored;  // where the input is missing, that is told when it is opened
-  const bool same = fs::equivalent(in, out, ignored);
-  if (same) throw ArgumentError("OUT.bag is IN.bag, which would be overwritten");
+struct Arguments {
+  std::vector<std::string> files;  ///< the parts of a recording, then the output
+  std::string summary;
+};
+
+/// One output a part: OUT itself, or files of their names in the directory OUT.
+BagParts outputsOf(const BagParts& in, const fs::path& out) {
+  if (in.size() == 1 && !fs::is_directory(out)) return {out};
+  std::error_code error;
+  fs::create_directories(out, error);
+  if (error) throw DataError(fmt::format("{}: cannot be created: {}", out.string(), error.message()));
+  BagParts outputs;
+  for (const fs::path& part : in) outputs.push_back(out / part.filename());
+  return outputs;
+}
+
+void requireOtherFiles(const BagParts& in, const BagParts& out) {
+  for (const fs::path& output : out) {
+    for (const fs::path& part : in) {
+      std::error_code ignored;  // where the input is missing, that is told when it is opened
+      if (fs::equivalent(part, output, ignored)) throw ArgumentError("OUT.bag is IN.bag, which would be overwritten");
+    }
+  }
 }
 
 void report(const LabelBagSummary& summary) {
@@ -28,8 +48,23 @@ void report(const LabelBagSummary& summary) {
   fmt::print("peak memory: {}\n", megabytes(peakMemory()));
 }
 
-void run(const CLI::App& app, const std::string& in, const std::string& out, const LabelBagOptions& options) {
-  requireOtherFile(in, out);
+/// What a workflow gathers from many runs.
+void keepSummary(const fs::path& file, const LabelBagSummary& summary, const Config& config) {
+  double seconds = 0.0;
+  for (const double time : summary.times) seconds += time;
+  const PipelineCounts& counts = summary.counts;
+  writeReport(file, fmt::format("{{\"method\": \"{}\", \"duration\": {:.3f}, \"messages\": {}, \"clouds\": {}, "
+                                "\"labeled\": {}, \"dropped\": {}, \"echoes\": {}, \"labelling_time\": {:.3f}, "
+                                "\"median_time\": {:.6f}, \"p99_time\": {:.6f}, \"peak_memory\": {}}}\n",
+                                nameOf(config.method), summary.duration, summary.messages, counts.clouds_in,
+                                counts.clouds_labeled, counts.dropped.total(), summary.echoes, seconds,
+                                quantile(summary.times, 0.5), quantile(summary.times, 0.99), peakMemory()));
+}
+
+void run(const CLI::App& app, const Arguments& arguments, const LabelBagOptions& options) {
+  const BagParts in(arguments.files.begin(), arguments.files.end() - 1);
+  const BagParts out = outputsOf(in, arguments.files.back());
+  requireOtherFiles(in, out);
   std::optional<ProgressBar> progress;
   const auto summary = labelBag(in, out, options, [&](std::size_t, std::size_t total) {
     if (!progress) progress.emplace(total);
@@ -38,6 +73,7 @@ void run(const CLI::App& app, const std::string& in, const std::string& out, con
   progress.reset();
   for (const std::string& remark : summary.remarks) warn(app, remark);
   report(summary);
+  if (!arguments.summary.empty()) keepSummary(arguments.summary, summary, options.config);
 }
 
 }  // namespace
@@ -45,16 +81,19 @@ void run(const CLI::App& app, const std::string& in, const std::string& out, con
 
 int main(int argc, char** argv) {
   CLI::App app("Copies a bag and adds its clouds with labels, the same that the live node gives.", "donex_bag");
-  std::string in, out;
+  donex::Arguments arguments;
   donex::LabelBagOptions options;
-  app.add_option("IN.bag", in, "clouds, odometry, tf")->required();
-  app.add_option("OUT.bag", out, "everything of IN.bag and the labelled clouds; overwritten")->required();
+  app.footer("donex_bag IN.bag OUT.bag\ndonex_bag PART_0.bag PART_1.bag ... OUT_DIR   (a split recording, labelled as one)");
+  app.add_option("BAGS", arguments.files, "IN.bag OUT.bag: everything of IN and its labelled clouds; OUT is overwritten")
+      ->required()
+      ->expected(2, 100000);
   app.add_option("--points", options.points, "topic of the clouds; needed where there are several");
   app.add_option("--odom", options.odom, "topic of the odometry; needed where there are several");
   app.add_option("--labeled", options.labeled, "topic of the labelled clouds, by default " + options.labeled);
+  app.add_option("--summary", arguments.summary, "write counts, times and memory to this file (JSON)");
   const donex::ConfigOptions config(app);
   return donex::runProgram(app, argc, argv, [&] {
     options.config = config.config();
-    donex::run(app, in, out, options);
+    donex::run(app, arguments, options);
   });
 }

@@ -20,7 +20,11 @@ double secondsSince(std::chrono::steady_clock::time_point start) {
 }  // namespace
 
 Pipeline::Pipeline(const Config& config, const tf2::BufferCore& tf, PipelineEvents events)
-    : config_(config), events_(std::move(events)), motion_(config.motion, tf), detector_(makeDetector(config)) {}
+    : Pipeline(config, tf, std::move(events), makeDetector(config)) {}
+
+Pipeline::Pipeline(const Config& config, const tf2::BufferCore& tf, PipelineEvents events,
+                   std::shared_ptr<Detector> detector)
+    : config_(config), events_(std::move(events)), motion_(config.motion, tf), detector_(std::move(detector)) {}
 
 void Pipeline::addCloud(const sensor_msgs::PointCloud2ConstPtr& cloud, double now) {
   ++counts_.clouds_in;

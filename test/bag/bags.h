@@ -87,7 +87,7 @@ inline std_msgs::String text(const std::string& data) {
 
 inline LabelBagSummary label(const std::filesystem::path& in, const std::filesystem::path& out,
                              const LabelBagOptions& options = {}) {
-  return labelBag(in, out, options, [](std::size_t, std::size_t) {});
+  return labelBag({in}, {out}, options, [](std::size_t, std::size_t) {});
 }
 
 /// The names of the files of a directory.

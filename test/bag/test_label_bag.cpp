@@ -2,6 +2,7 @@
 
 #include "bag/bags.h"
 #include "donex/bag/bag_file.h"
+#include "donex/io/drive_run.h"
 
 namespace donex {
 namespace {
@@ -173,6 +174,89 @@ TEST(LabelBag, WhatIsDroppedIsCountedAndExplained) {
   EXPECT_EQ(summary.counts.dropped.total(), 1U);
   EXPECT_EQ(summary.counts.refused.total(), 1U);
   EXPECT_EQ(summary.remarks.size(), 2U);
+}
+
+TEST(LabelBag, WholeDriveMethodsReadTheBagSeveralTimes) {
+  const TemporaryDirectory directory;
+  const fs::path in = directory.path() / "in.bag", out = directory.path() / "out.bag";
+  test::writeDriveBag(directory.path() / "drive", in, 8);
+  LabelBagOptions options;
+  options.config.method = Method::kPeopleremover;
+  options.config.voxel_size = 2.0;  // the drive is random: only large voxels are seen through often
+  const auto summary = test::label(in, out, options);
+  EXPECT_EQ(summary.counts.clouds_in, 8U);
+  EXPECT_EQ(summary.counts.clouds_labeled, 8U);
+  const auto clouds = test::readTopic<PointCloud2>(out, kLabeled);
+  ASSERT_EQ(clouds.size(), 8U);
+  const SequenceReader sequence(directory.path() / "drive");
+  DriveRun drive(options.config);
+  long dynamic = 0;
+  const auto compare = [&](std::size_t i, const Scan&, const EchoLabels& labels) {
+    EXPECT_EQ(dynamicOf(*clouds[i]), labels.dynamic) << "scan " << i;
+    dynamic += std::count(labels.dynamic.begin(), labels.dynamic.end(), 1);
+  };
+  drive.run(sequence, sequence.size(), compare, [] {});
+  EXPECT_GT(dynamic, 10);
+}
+
+TEST(LabelBag, TheNodeRefusesWhatCannotRunLive) {
+  const tf2::BufferCore tf;
+  Config config;
+  config.method = Method::kPeopleremover;
+  EXPECT_THROW(Pipeline(config, tf, {}), std::invalid_argument);
+}
+
+/// Splits a bag by time as a recorder does: what came first (/tf_static) is in the first part only.
+BagParts split(const fs::path& in, const fs::path& directory, const std::vector<double>& ends) {
+  BagParts parts;
+  rosbag::Bag bag(in.string());
+  for (std::size_t i = 0; i <= ends.size(); ++i) {
+    parts.push_back(directory / ("part_" + std::to_string(i) + ".bag"));
+    rosbag::Bag part(parts.back().string(), rosbag::bagmode::Write);
+    const ros::Time from = i == 0 ? ros::TIME_MIN : ros::Time(ends[i - 1]);
+    const ros::Time to = i == ends.size() ? ros::TIME_MAX : ros::Time(ends[i]) - ros::Duration(0, 1);
+    rosbag::View view(bag, from, to);
+    for (const rosbag::MessageInstance& message : view) {
+      part.write(message.getTopic(), message.getTime(), message, message.getConnectionHeader());
+    }
+  }
+  return parts;
+}
+
+TEST(LabelBag, PartsOfARecordingAreLabelledAsOne) {
+  const TemporaryDirectory directory;
+  const fs::path in = directory.path() / "in.bag", whole = directory.path() / "whole.bag";
+  test::writeDriveBag(directory.path() / "drive", in, 15);
+  LabelBagOptions options;
+  options.config = paperConfig();
+  test::label(in, whole, options);
+  const BagParts parts = split(in, directory.path(), {50.45, 51.05});
+  fs::create_directory(directory.path() / "out");
+  BagParts outputs;
+  for (const auto& part : parts) outputs.push_back(directory.path() / "out" / part.filename());
+  const auto summary = labelBag(parts, outputs, options, [](std::size_t, std::size_t) {});
+  EXPECT_EQ(summary.counts.clouds_labeled, 15U);
+  EXPECT_NEAR(summary.duration, 1.4, 0.01);
+  std::vector<std::vector<std::uint8_t>> labels, expected;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    EXPECT_TRUE(test::readAll(parts[i]) == test::readAll(outputs[i], kLabeled)) << "part " << i;
+    const auto clouds = test::readTopic<PointCloud2>(outputs[i], kLabeled);
+    EXPECT_FALSE(clouds.empty());
+    for (const auto& cloud : clouds) labels.push_back(dynamicOf(*cloud));
+  }
+  for (const auto& cloud : test::readTopic<PointCloud2>(whole, kLabeled)) expected.push_back(dynamicOf(*cloud));
+  EXPECT_EQ(labels, expected);
+}
+
+TEST(LabelBag, WhatDoesNotFollowIsNoPart) {
+  const TemporaryDirectory directory;
+  const fs::path in = directory.path() / "in.bag";
+  test::writeDriveBag(directory.path() / "drive", in, 15);
+  const BagParts parts = split(in, directory.path(), {50.75});
+  const BagParts backwards{parts[1], parts[0]}, outputs{directory.path() / "a.bag", directory.path() / "b.bag"};
+  EXPECT_THROW(labelBag(backwards, outputs, {}, [](std::size_t, std::size_t) {}), DataError);
+  EXPECT_THROW(labelBag(parts, {outputs[0]}, {}, [](std::size_t, std::size_t) {}), std::invalid_argument);
+  EXPECT_FALSE(fs::exists(outputs[0]));
 }
 
 }  // namespace

@@ -1,3 +1,5 @@
+#include <fstream>
+
 #include <gtest/gtest.h>
 
 #include "programs/command.h"
@@ -144,7 +146,32 @@ TEST_F(Programs, WholeDriveMethodsRunOnSequences) {
   EXPECT_TRUE(fs::exists(path("pred/000007.label")));
 }
 
+TEST_F(Programs, MapIsBuiltAndScored) {
+  const Outcome outcome = expect(0, "8 scans, ", DONEX_MAP, "seq map.pcd --compare --method donex_2d");
+  EXPECT_NE(outcome.text.find("by voxel of 0.2 m (ERASOR)"), std::string::npos) << outcome.text;
+  EXPECT_GT(fs::file_size(path("map.pcd")), 300U);
+  expect(1, "none: is not a directory", DONEX_MAP, "none map.pcd");
+  expect(1, "/none: is not a directory", DONEX_MAP, "seq none/map.pcd");
+  fs::remove_all(path("seq/labels"));
+  expect(1, "seq/labels: holds no labels to compare with", DONEX_MAP, "seq map.pcd --compare");
+}
+
 #ifdef DONEX_BAG
+
+TEST_F(Programs, MapIsBuiltFromABag) {
+  run(DONEX_SEQUENCE_TO_BAG, "seq in.bag");
+  expect(0, "8 scans, ", DONEX_MAP, "in.bag map.pcd --method peopleremover");
+  expect(2, "--compare and --frames are for sequences", DONEX_MAP, "in.bag map.pcd --compare");
+}
+
+TEST_F(Programs, BagWritesASummary) {
+  run(DONEX_SEQUENCE_TO_BAG, "seq in.bag");
+  expect(0, "8 of 8", DONEX_BAG, "in.bag out.bag --summary out.json");
+  std::ifstream stream(path("out.json"));
+  std::string text;
+  std::getline(stream, text);
+  EXPECT_NE(text.find("\"labeled\": 8, \"dropped\": 0"), std::string::npos) << text;
+}
 
 TEST_F(Programs, BagIsLabelled) {
   expect(0, "8 clouds on /points, 8 odometry messages", DONEX_SEQUENCE_TO_BAG, "seq in.bag");
@@ -157,7 +184,7 @@ TEST_F(Programs, BagIsLabelled) {
 TEST_F(Programs, BagRefusesWrongArguments) {
   run(DONEX_SEQUENCE_TO_BAG, "seq in.bag");
   const auto size = fs::file_size(path("in.bag"));
-  expect(2, "is required", DONEX_BAG, "in.bag");
+  expect(2, "required", DONEX_BAG, "in.bag");
   expect(2, "OUT.bag is IN.bag", DONEX_BAG, "in.bag ./in.bag");
   expect(2, "there is no parameter x", DONEX_BAG, "in.bag out.bag --set x=1");
   expect(2, "", DONEX_SEQUENCE_TO_BAG, "seq other.bag --odom-rate 0");

@@ -25,6 +25,7 @@ struct LabelBagSummary {
   std::size_t messages = 0;  ///< of the input
   std::size_t echoes = 0;
   PipelineCounts counts;
+  double duration = 0.0;     ///< from the first to the last message of the input [s]
   std::vector<double> times;         ///< parsing and judging, a labelled cloud [s]
   std::vector<std::string> remarks;  ///< why something was dropped, refused or forgotten: each kind's first
 };
@@ -32,12 +33,25 @@ struct LabelBagSummary {
 /// `progress` hears how many of how many messages are done.
 using LabelBagProgress = std::function<void(std::size_t done, std::size_t total)>;
 
-/// Copies `in` byte for byte (so order, times, connection headers and compression are kept) to `out`, and adds the
-/// labelled clouds at the time of the message that completed them, as a recording of the live node would. What the node
-/// would drop is dropped here. Memory does not grow with the bag. `out` appears whole or not at all.
-/// Throws DataError: `in` is no sound bag, has not the topics (the message lists those it has), or not one cloud
-/// could be labelled. Throws std::invalid_argument with every fault of the configuration.
-LabelBagSummary labelBag(const std::filesystem::path& in, const std::filesystem::path& out,
-                         const LabelBagOptions& options, const LabelBagProgress& progress);
+/// Bags that follow one another in time: the parts of one recording, most often only one.
+using BagParts = std::vector<std::filesystem::path>;
+
+/// Hears of every labelled cloud: the time of the message that completed it, and the part that holds this message.
+using LabelBagSink = std::function<void(const LabeledScan& scan, const ros::Time& now, std::size_t part)>;
+
+/// Labels the clouds as the live node would, which sees the parts of a recording as one: its memory and /tf_static go
+/// on from part to part. Methods that need whole drives read it several times. What the node would drop is dropped.
+/// Memory does not grow with the bags (but for such a method's own). `options.labeled` is not used.
+/// Throws DataError: a bag is not sound, a part does not follow the one before, there are not the topics (the message
+/// lists those there are), or not one cloud could be labelled. Throws std::invalid_argument with every fault of the
+/// configuration.
+LabelBagSummary judgeBag(const BagParts& in, const LabelBagOptions& options, const LabelBagSink& sink,
+                         const LabelBagProgress& progress);
+
+/// Copies every part byte for byte (so order, times, connection headers and compression are kept) to its `out`, and
+/// adds the labelled clouds at the time of the message that completed them, as a recording of the live node would:
+/// judgeBag, which tells what is thrown. Each output appears whole or not at all.
+LabelBagSummary labelBag(const BagParts& in, const BagParts& out, const LabelBagOptions& options,
+                         const LabelBagProgress& progress);
 
 }  // namespace donex

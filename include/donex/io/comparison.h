@@ -49,7 +49,7 @@ struct SequenceComparison {
   std::string name;
   std::size_t scans = 0;
   std::vector<ScoredPrediction> predictions;
-  std::optional<BirdView> view;  ///< of the scored scan with the most moving echoes
+  std::optional<BirdView> view;  ///< of the scored scan with most moving echoes in the second half
 
   std::vector<NamedEvaluation> columns() const;
 };

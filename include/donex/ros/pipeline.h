@@ -55,6 +55,9 @@ class Pipeline {
   /// Throws std::invalid_argument with every fault of the configuration. `tf` must outlive the pipeline.
   Pipeline(const Config& config, const tf2::BufferCore& tf, PipelineEvents events);
 
+  /// The same with a detector that outlives it: whole drives are shown to one detector several times.
+  Pipeline(const Config& config, const tf2::BufferCore& tf, PipelineEvents events, std::shared_ptr<Detector> detector);
+
   void addCloud(const sensor_msgs::PointCloud2ConstPtr& cloud, double now);
   void addOdometry(const nav_msgs::Odometry& odometry);
 
@@ -103,7 +106,7 @@ class Pipeline {
   Config config_;
   PipelineEvents events_;
   MotionSource motion_;
-  std::unique_ptr<Detector> detector_;
+  std::shared_ptr<Detector> detector_;
   bool watched_ = false;
   PipelineCounts counts_;
   std::deque<WaitingCloud> waiting_;  // by stamp

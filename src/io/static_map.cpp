@@ -1,0 +1,128 @@
+#include "donex/io/static_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <vector>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace donex {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The header of a PCD; padded, so that it can be written over once the number of points is known.
+std::string header(std::size_t points) {
+  return fmt::format(
+      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n"
+      "WIDTH {0:<20}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {0:<20}\nDATA binary\n",
+      points);
+}
+
+}  // namespace
+
+StaticMap::StaticMap(fs::path file, double voxel_size, std::size_t memory_limit)
+    : file_(std::move(file)), voxel_size_(voxel_size), memory_limit_(memory_limit) {}
+
+StaticMap::~StaticMap() {
+  std::error_code ignored;
+  for (const auto& tile : put_away_) fs::remove(fileOf(tile.first), ignored);
+}
+
+fs::path StaticMap::fileOf(const TileIndex& index) const {
+  return fmt::format("{}.{}.{}_{}.part", file_.string(), getpid(), index.first, index.second);
+}
+
+void StaticMap::add(const Eigen::Vector3d& point) {
+  const Eigen::Array3d in_voxels = (point / voxel_size_).array().floor();
+  const Index3 voxel = in_voxels.cast<int>();
+  const TileIndex tile(static_cast<int>(std::floor(point.x() / kTile)), static_cast<int>(std::floor(point.y() / kTile)));
+  const auto [mean, is_new] = tiles_[tile].try_emplace(keyOf(voxel));
+  mean->second.sum += (point - (in_voxels * voxel_size_).matrix()).cast<float>();
+  ++mean->second.count;
+  voxels_ += is_new ? 1U : 0U;
+}
+
+void StaticMap::settle(const Eigen::Vector3d& vehicle) {
+  if (memoryBytes() <= memory_limit_) return;
+  std::vector<std::pair<double, TileIndex>> farthest_first;
+  for (const auto& [index, tile] : tiles_) {
+    const Eigen::Vector2d center((index.first + 0.5) * kTile, (index.second + 0.5) * kTile);
+    farthest_first.emplace_back(-(center - vehicle.head<2>()).norm(), index);
+  }
+  std::sort(farthest_first.begin(), farthest_first.end());
+  // Half of it, so that this does not happen in every scan.
+  for (const auto& entry : farthest_first) {
+    if (memoryBytes() <= memory_limit_ / 2) return;
+    putAway(entry.second);
+  }
+}
+
+void StaticMap::putAway(const TileIndex& index) {
+  const auto tile = tiles_.find(index);
+  std::ofstream stream(fileOf(index), std::ios::binary | std::ios::app);
+  for (const auto& [key, mean] : tile->second) {
+    stream.write(reinterpret_cast<const char*>(&key), sizeof(key));
+    stream.write(reinterpret_cast<const char*>(mean.sum.data()), 3 * sizeof(float));
+    stream.write(reinterpret_cast<const char*>(&mean.count), sizeof(mean.count));
+  }
+  stream.close();
+  ++put_away_[index];
+  if (!stream) throw DataError(fileOf(index).string() + ": cannot be written");
+  voxels_ -= tile->second.size();
+  tiles_.erase(tile);
+}
+
+void StaticMap::takeBack(const TileIndex& index, Tile& tile) const {
+  std::ifstream stream(fileOf(index), std::ios::binary);
+  VoxelKey key = 0;
+  while (stream.read(reinterpret_cast<char*>(&key), sizeof(key))) {
+    Mean read;
+    stream.read(reinterpret_cast<char*>(read.sum.data()), 3 * sizeof(float));
+    stream.read(reinterpret_cast<char*>(&read.count), sizeof(read.count));
+    Mean& mean = tile[key];
+    mean.sum += read.sum;
+    mean.count += read.count;
+  }
+}
+
+/// In the order of the keys: the same map is the same file.
+std::size_t StaticMap::writeTile(Tile& tile, std::ostream& stream) const {
+  std::vector<VoxelKey> keys;
+  for (const auto& entry : tile) keys.push_back(entry.first);
+  std::sort(keys.begin(), keys.end());
+  for (const VoxelKey key : keys) {
+    const Mean& mean = tile.at(key);
+    const Eigen::Vector3d corner = voxelOfKey(key).cast<double>() * voxel_size_;
+    const Eigen::Vector3f point = (corner + (mean.sum / static_cast<float>(mean.count)).cast<double>()).cast<float>();
+    stream.write(reinterpret_cast<const char*>(point.data()), 3 * sizeof(float));
+  }
+  return keys.size();
+}
+
+std::size_t StaticMap::write() {
+  const fs::path temporary = fmt::format("{}.{}.part", file_.string(), getpid());
+  std::ofstream stream(temporary, std::ios::binary);
+  stream << header(0);
+  std::size_t points = 0;
+  for (const auto& entry : put_away_) tiles_[entry.first];
+  while (!tiles_.empty()) {
+    const auto tile = tiles_.begin();
+    if (put_away_.count(tile->first) != 0) takeBack(tile->first, tile->second);
+    points += writeTile(tile->second, stream);
+    tiles_.erase(tile);
+  }
+  voxels_ = 0;
+  stream.seekp(0);
+  stream << header(points);
+  stream.close();
+  std::error_code error;
+  if (stream) fs::rename(temporary, file_, error);
+  if (stream && !error) return points;
+  fs::remove(temporary, error);
+  throw DataError(file_.string() + ": cannot be written");
+}
+
+}  // namespace donex
