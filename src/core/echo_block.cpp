@@ -1,5 +1,6 @@
 #include "donex/core/echo_block.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -19,7 +20,7 @@ Row rowOf(const Eigen::Matrix3f& matrix, const Eigen::Vector3f& offset, int row)
   return {matrix(row, 0), matrix(row, 1), matrix(row, 2), offset[row]};
 }
 
-DONEX_WIDE_LOOPS void placeAll(const Placement& p, const float* ex, const float* ey, const float* ez, EchoBlock& block) {
+DONEX_WIDE_LOOPS void placeAll(const Placement& p, const float* echoes, EchoBlock& block) {
   constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   const Row to_x = rowOf(p.rotation, p.origin, 0), to_y = rowOf(p.rotation, p.origin, 1);
   const Row to_z = rowOf(p.rotation, p.origin, 2);
@@ -28,9 +29,9 @@ DONEX_WIDE_LOOPS void placeAll(const Placement& p, const float* ex, const float*
   const float low_x = p.region_low.x(), low_y = p.region_low.y(), low_z = p.region_low.z();
   const float high_x = p.region_high.x(), high_y = p.region_high.y(), high_z = p.region_high.z();
   const float extent_x = p.extent.x(), extent_y = p.extent.y(), extent_z = p.extent.z();
-  int echoes = 0;
+  int found = 0;
   for (int i = 0; i < EchoBlock::kSize; ++i) {
-    const float x = ex[i], y = ey[i], z = ez[i];
+    const float x = echoes[3 * i], y = echoes[3 * i + 1], z = echoes[3 * i + 2];
     const bool is_echo = x * x + (y * y + z * z) <= kFarthestEcho * kFarthestEcho;  // false for NaN
     const float bx = base_x(x, y, z), by = base_y(x, y, z), bz = base_z(x, y, z);
     const float ux = to_x(x, y, z), uy = to_y(x, y, z), uz = to_z(x, y, z);
@@ -38,7 +39,7 @@ DONEX_WIDE_LOOPS void placeAll(const Placement& p, const float* ex, const float*
                            static_cast<int>(by < high_y) & static_cast<int>(bz >= low_z) & static_cast<int>(bz < high_z);
     const bool in_window = static_cast<int>(ux >= 0.0F) & static_cast<int>(ux < extent_x) & static_cast<int>(uy >= 0.0F) &
                            static_cast<int>(uy < extent_y) & static_cast<int>(uz >= 0.0F) & static_cast<int>(uz < extent_z);
-    echoes += static_cast<int>(is_echo);
+    found += static_cast<int>(is_echo);
     block.x[i] = is_echo ? ux : kNone;
     block.y[i] = is_echo ? uy : kNone;
     block.z[i] = is_echo ? uz : kNone;
@@ -49,7 +50,8 @@ DONEX_WIDE_LOOPS void placeAll(const Placement& p, const float* ex, const float*
     block.voxel_y[i] = static_cast<int>(inside ? uy : 0.0F);
     block.voxel_z[i] = static_cast<int>(inside ? uz : 0.0F);
   }
-  block.none = block.count - echoes;
+  for (int i = 0; i < EchoBlock::kSize; ++i) block.observed[i] = static_cast<std::uint8_t>(block.inside[i]);
+  block.none = block.count - found;
 }
 
 }  // namespace
@@ -68,11 +70,12 @@ void EchoBlock::appendNoEchoes(std::size_t first, std::vector<std::uint32_t>& nu
 }
 
 void EchoBlock::place(const Placement& placement, const Eigen::Vector3f* echoes, int echoes_count) {
-  alignas(64) float ex[kSize], ey[kSize], ez[kSize];
+  static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float));
   count = echoes_count;
-  for (int i = 0; i < count; ++i) ex[i] = echoes[i].x(), ey[i] = echoes[i].y(), ez[i] = echoes[i].z();
-  for (int i = count; i < kSize; ++i) ex[i] = ey[i] = ez[i] = std::numeric_limits<float>::quiet_NaN();
-  placeAll(placement, ex, ey, ez, *this);
+  if (count == kSize) return placeAll(placement, echoes->data(), *this);
+  alignas(64) float padded[3 * kSize];
+  std::fill(std::copy_n(echoes->data(), 3 * count, padded), padded + 3 * kSize, std::numeric_limits<float>::quiet_NaN());
+  placeAll(placement, padded, *this);
 }
 
 }  // namespace donex

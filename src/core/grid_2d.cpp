@@ -70,8 +70,8 @@ void Grid2d::take(const Scan& scan, EchoLabels& labels) {
   hit_.clear();
   labels.resize(scan.echoes.size());
   no_echoes_.clear();
-  new_voxels_.clear();
-  new_voxels_.reserve(scan.echoes.size());
+  new_count_ = 0;
+  if (new_voxels_.size() <= scan.echoes.size()) new_voxels_.resize(scan.echoes.size() + 1);
   const bool resamples = window_.compensation() == Compensation::kResample;
   const auto judge_block = [&](std::size_t first, const EchoBlock& block) {
     block.appendNoEchoes(first, no_echoes_);
@@ -85,6 +85,9 @@ template <bool keep_order>
 void Grid2d::judge(std::size_t first, const EchoBlock& block, EchoLabels& labels) {
   BlockSlots at;
   layout_.locate(block, at);
+  const float lift = layout_.lift();
+  std::uint8_t* dynamic = labels.dynamic.data() + first;
+  int new_echoes[EchoBlock::kSize + 1], new_count = 0;
   for (int i = 0; i < block.count; ++i) {
     if (i + kAhead < EchoBlock::kSize) __builtin_prefetch(&cells_[at.slot[i + kAhead]], 1);
     Cell& cell = cells_[at.slot[i]];
@@ -94,13 +97,16 @@ void Grid2d::judge(std::size_t first, const EchoBlock& block, EchoLabels& labels
       cell.range = HeightRange{};
       if (keep_order && block.inside[i] != 0) hit_.push_back(at.slot[i]);
     }
-    const float height = block.z[i] + layout_.lift();
+    const float height = block.z[i] + lift;
     cell.range.extend(height);
-    const bool is_new = block.inside[i] != 0 && !cell.before.holds(height);
-    if (is_new) new_voxels_.emplace_back(block.voxel_x[i], block.voxel_y[i], block.voxel_z[i]);
-    labels.dynamic[first + static_cast<std::size_t>(i)] = is_new ? 1 : 0;
-    labels.observed[first + static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(block.inside[i]);
+    const bool is_outside_range = static_cast<int>(height < cell.before.lo) | static_cast<int>(height > cell.before.hi);
+    const bool is_new = (block.inside[i] & static_cast<int>(is_outside_range)) != 0;
+    dynamic[i] = is_new ? 1 : 0;
+    new_echoes[new_count] = i;
+    new_count += is_new ? 1 : 0;  // written in any case: no branch to guess
   }
+  std::copy_n(block.observed, block.count, labels.observed.data() + first);
+  for (int i = 0; i < new_count; ++i) new_voxels_[new_count_++] = block.voxel(new_echoes[i]);
 }
 
 void Grid2d::rememberContents() {
@@ -118,7 +124,7 @@ void Grid2d::rememberContents() {
 
 void Grid2d::reset() {
   std::fill(cells_.begin(), cells_.end(), Cell{});
-  new_voxels_.clear();
+  new_count_ = 0;
   no_echoes_.clear();
   contents_.clear();
   scan_ = 0;

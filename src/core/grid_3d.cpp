@@ -78,8 +78,8 @@ void Grid3d::hit(const Scan& scan, EchoLabels& labels) {
   labels.resize(scan.echoes.size());
   hit_voxels_.clear();
   no_echoes_.clear();
-  new_voxels_.clear();
-  new_voxels_.reserve(scan.echoes.size());
+  new_count_ = 0;
+  if (new_voxels_.size() <= scan.echoes.size()) new_voxels_.resize(scan.echoes.size() + 1);
   const bool resamples = window_.compensation() == Compensation::kResample;
   const auto judge = [&](std::size_t first, const EchoBlock& block) {
     block.appendNoEchoes(first, no_echoes_);
@@ -93,18 +93,22 @@ template <bool keep_order>
 void Grid3d::hit(std::size_t first, const EchoBlock& block, EchoLabels& labels) {
   BlockSlots at;
   layout_.locate(block, at);
+  std::uint8_t* dynamic = labels.dynamic.data() + first;
+  int new_echoes[EchoBlock::kSize + 1], new_count = 0;
   for (int i = 0; i < block.count; ++i) {
     if (i + kAhead < EchoBlock::kSize) __builtin_prefetch(&bricks_[at.slot[i + kAhead]], 1);
-    const Index3 voxel(block.voxel_x[i], block.voxel_y[i], block.voxel_z[i]);
-    Brick& brick = brickAt(at.slot[i], voxel);
+    Brick& brick = bricks_[at.slot[i]];
+    if ((brick.remembered | brick.hit) == 0) brickAt(at.slot[i], block.voxel(i));
     const std::uint64_t mask = maskOf(at.bit[i]);
     const bool is_new = (brick.remembered & mask) == 0;
-    if (keep_order && block.inside[i] != 0 && (brick.hit & mask) == 0) hit_voxels_.push_back(voxel);
+    if (keep_order && block.inside[i] != 0 && (brick.hit & mask) == 0) hit_voxels_.push_back(block.voxel(i));
     brick.hit |= mask;
-    if (is_new) new_voxels_.push_back(voxel);
-    labels.dynamic[first + static_cast<std::size_t>(i)] = is_new ? 1 : 0;
-    labels.observed[first + static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(block.inside[i]);
+    dynamic[i] = is_new ? 1 : 0;
+    new_echoes[new_count] = i;
+    new_count += is_new ? 1 : 0;  // written in any case: no branch to guess
   }
+  std::copy_n(block.observed, block.count, labels.observed.data() + first);
+  for (int i = 0; i < new_count; ++i) new_voxels_[new_count_++] = block.voxel(new_echoes[i]);
 }
 
 /// A hit voxel starts anew from its centre; one in the shadow keeps the residual it carries.
@@ -133,7 +137,7 @@ void Grid3d::clearBricks() {
 void Grid3d::reset() {
   clearBricks();
   rays_.reset();
-  new_voxels_.clear();
+  new_count_ = 0;
   no_echoes_.clear();
   contents_.clear();
   hit_voxels_.clear();

@@ -30,7 +30,10 @@ struct EchoBlock {
   alignas(64) float x[kSize], y[kSize], z[kSize];  ///< [voxels]; NaN where the echo is none (non-finite, too far)
   /// 1 inside the region of interest and the window, the echo hits the grid; else 0.
   alignas(64) std::int32_t inside[kSize];
+  alignas(64) std::uint8_t observed[kSize];  ///< the same as bytes
   alignas(64) std::int32_t voxel_x[kSize], voxel_y[kSize], voxel_z[kSize];  ///< 0 where not inside
+
+  Eigen::Vector3i voxel(int i) const { return {voxel_x[i], voxel_y[i], voxel_z[i]}; }
 
   /// Appends the numbers of the entries that are no echo; the first entry is number `first`.
   void appendNoEchoes(std::size_t first, std::vector<std::uint32_t>& numbers) const;

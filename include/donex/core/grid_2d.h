@@ -28,7 +28,9 @@ class Grid2d {
   /// Numbers of the last scan's echoes that are none (non-finite, too far).
   const std::vector<std::uint32_t>& noEchoes() const { return no_echoes_; }
   /// Voxels of the last scan's new echoes, in the window; a voxel may come more than once.
-  const std::vector<Index3>& newVoxels() const { return new_voxels_; }
+  std::vector<Index3> newVoxels() const {
+    return {new_voxels_.begin(), new_voxels_.begin() + static_cast<std::ptrdiff_t>(new_count_)};
+  }
   /// Remembered range of a cell of the window, heights as the window's.
   HeightRange rangeAt(int x, int y) const;
   std::size_t memoryBytes() const;
@@ -57,7 +59,8 @@ class Grid2d {
   CellLayout layout_;
   std::uint32_t scan_ = 0;
   std::vector<Cell> cells_;  ///< by slot; one more for the echoes outside
-  std::vector<Index3> new_voxels_;
+  std::vector<Index3> new_voxels_;  ///< the first new_count_ of them
+  std::size_t new_count_ = 0;
   std::vector<std::uint32_t> no_echoes_;
   std::vector<Content> contents_;              ///< resample: one a cell with a range
   std::vector<std::uint32_t> content_of_cell_; ///< resample: while ranges are moved

@@ -27,7 +27,9 @@ class Grid3d {
   /// Numbers of the last scan's echoes that are none (non-finite, too far).
   const std::vector<std::uint32_t>& noEchoes() const { return no_echoes_; }
   /// Voxels of the last scan's new echoes, in the window; a voxel may come more than once.
-  const std::vector<Index3>& newVoxels() const { return new_voxels_; }
+  std::vector<Index3> newVoxels() const {
+    return {new_voxels_.begin(), new_voxels_.begin() + static_cast<std::ptrdiff_t>(new_count_)};
+  }
   /// Remembered voxels, in the window; order is not specified.
   std::vector<Index3> remembered() const;
   std::size_t memoryBytes() const;
@@ -69,7 +71,8 @@ class Grid3d {
   std::vector<Brick> bricks_;  ///< by slot; one more for the echoes outside
   std::vector<Used> used_;     ///< each once
   RayIndex rays_;
-  std::vector<Index3> new_voxels_;
+  std::vector<Index3> new_voxels_;  ///< the first new_count_ of them
+  std::size_t new_count_ = 0;
   std::vector<std::uint32_t> no_echoes_;
   std::vector<Content> contents_;    ///< resample: one a remembered voxel
   std::vector<Index3> hit_voxels_;   ///< resample: in the order of their first echoes
