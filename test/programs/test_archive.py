@@ -1,0 +1,109 @@
+#!/usr/bin/python3
+"""donex_archive on a small folder: a corrupt bag, a split recording, a run that is killed, and results as of single runs.
+
+Usage: test_archive.py DONEX_ARCHIVE DIRECTORY_OF_PROGRAMS
+"""
+import csv
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import rosbag
+
+
+def run(*command, code=0):
+    result = subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if result.returncode != code:
+        sys.exit(f"{' '.join(map(str, command))} ended with {result.returncode}, not {code}:\n{result.stdout}")
+    return result.stdout
+
+
+def expect(truth, what):
+    if not truth:
+        sys.exit(f"not so: {what}")
+
+
+def split(source, folder):
+    """As rosbag record --split writes: each part has the date at which it begins, /tf_static is in the first."""
+    names = ["drive_2024-05-06-07-08-09_0.bag", "drive_2024-05-06-07-09-10_1.bag"]
+    with rosbag.Bag(str(source)) as bag, rosbag.Bag(str(folder / names[0]), "w") as first, \
+            rosbag.Bag(str(folder / names[1]), "w") as second:
+        middle = (bag.get_start_time() + bag.get_end_time()) / 2
+        for topic, message, stamp, header in bag.read_messages(return_connection_header=True):
+            part = first if stamp.to_sec() < middle else second
+            part.write(topic, message, stamp, connection_header=header)
+    return names
+
+
+def labels_of(*bags):
+    result = []
+    for name in bags:
+        with rosbag.Bag(str(name)) as bag:
+            result += [message.data for _, message, _ in bag.read_messages("/donex/labeled_points")]
+    return result
+
+
+def make_bags(programs, folder):
+    (folder / "day").mkdir(parents=True)
+    bags = {"one.bag": ("street", 1), "two.bag": ("intersection", 2), "day/long.bag": ("bend", 3)}
+    for name, (scene, seed) in bags.items():
+        run(programs / "donex_simulate", scene, folder / name, "--beams", 16, "--seed", seed, "--duration",
+            4 if "long" in name else 1, "--compression", "lz4" if seed == 2 else "none")
+    (folder / "bad.bag").write_bytes((folder / "one.bag").read_bytes()[:-3000])
+    (folder / "broken.bag").write_text("no bag")
+    return split(folder / "two.bag", folder)
+
+
+def kill_in_the_middle(archive, folder, out):
+    """Ends the whole archive while it writes the long bag."""
+    work = subprocess.Popen([str(archive), str(folder), str(out), "--jobs", "1"], stdout=subprocess.DEVNULL,
+                            stderr=subprocess.DEVNULL, start_new_session=True)
+    deadline = time.monotonic() + 120
+    while not list(out.rglob("long.bag.*.part")):
+        expect(time.monotonic() < deadline and work.poll() is None, "the long bag is written")
+        time.sleep(0.01)
+    os.killpg(work.pid, signal.SIGKILL)  # the process group that this test has made
+    work.wait()
+    expect(not (out / "day/long.bag").exists(), "a killed run leaves no half bag under the bag's name")
+
+
+def main():
+    archive, programs = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+    os.environ["DONEX_BAG"] = str(programs / "donex_bag")
+    with tempfile.TemporaryDirectory() as name:
+        folder, out, single = (pathlib.Path(name) / part for part in ("in", "out", "single"))
+        parts = make_bags(programs, folder)
+        kill_in_the_middle(archive, folder, out)
+        text = run(archive, folder, out, code=1)
+        expect("bad: " in text and "broken: " in text, "both faulty bags are named")
+        expect(not list(out.rglob("*.part")), "what the killed run left is gone")
+        (single / "day").mkdir(parents=True)
+        for bag in ("one.bag", "two.bag", "day/long.bag"):
+            run(os.environ["DONEX_BAG"], folder / bag, single / bag)
+            expect((single / bag).read_bytes() == (out / bag).read_bytes(), f"{bag} is that of a single run")
+        recording = parts[0][:-len(".bag")]
+        expect(labels_of(*(out / recording / part for part in parts)) == labels_of(single / "two.bag"),
+               "the parts have the labels of the whole")
+        rows = {row["recording"]: row for row in csv.DictReader(open(out / "summary.csv"))}
+        expect(set(rows) == {"one", "two", "day/long", "bad", "broken", recording}, "the summary has all recordings")
+        expect(rows["bad"]["state"] == "missing" and rows["one"]["labeled"] == "10", "the summary tells what was done")
+        before = (out / "one.bag").stat().st_mtime_ns
+        (folder / "bad.bag").unlink()
+        (folder / "broken.bag").unlink()
+        text = run(archive, folder, out)
+        expect("4 of 4 recordings are done already" in text, "nothing is done twice")
+        expect((out / "one.bag").stat().st_mtime_ns == before, "a finished bag stays as it is")
+        text = run(archive, folder, out, "--", "--method", "donex_2d", code=1)
+        expect("was begun with the options" in text, "one archive has one configuration")
+        listed = json.loads(run(archive, folder, out, "--list"))
+        expect(len(listed[recording]) == 2 and len(listed) == 4, "parts belong together")
+    print("an archive with two faulty bags, killed and resumed: every result equal to a single run")
+
+
+if __name__ == "__main__":
+    main()
