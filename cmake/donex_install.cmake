@@ -6,6 +6,9 @@ if(DONEX_BUILD_ROS)
   install(TARGETS donex_core donex_simulation donex_io donex_ros donex_bag_files donex_nodelets
     ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
     LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION})
+  if(TARGET donex_octomap)
+    install(TARGETS donex_octomap donex_octomap_nodelet LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION})
+  endif()
   install(TARGETS donex_node donex_simulated_lidar_node ${donex_programs}
     RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
   install(DIRECTORY include/${PROJECT_NAME}/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})

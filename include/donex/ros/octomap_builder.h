@@ -1,0 +1,37 @@
+// An octree of what the sensor saw: static echoes in, a map without moving things out. A consumer of ~static_points.
+#pragma once
+
+#include <memory>
+
+#include <Eigen/Geometry>
+#include <sensor_msgs/PointCloud2.h>
+
+namespace donex {
+
+class OctomapBuilder {
+ public:
+  struct Options {
+    double resolution = 0.2;  ///< edge of a leaf [m]
+    double max_range = 40.0;  ///< lines of sight end here; echoes beyond only free space up to it [m]
+  };
+
+  explicit OctomapBuilder(const Options& options);
+  ~OctomapBuilder();
+
+  /// Adds a cloud with its lines of sight. Echoes in the cloud's frame, lines of sight begin in its origin.
+  /// False when the cloud cannot be read (judgeLayout); then nothing is added.
+  bool add(const sensor_msgs::PointCloud2& cloud, const Eigen::Isometry3d& map_from_cloud);
+
+  /// Is the leaf at this place occupied? [m]
+  bool isOccupied(const Eigen::Vector3d& place) const;
+
+  /// Centres of the occupied leaves, x, y, z [m] in `header`'s frame.
+  sensor_msgs::PointCloud2Ptr occupiedCells(const std_msgs::Header& header) const;
+
+ private:
+  struct Tree;
+  Options options_;
+  std::unique_ptr<Tree> tree_;
+};
+
+}  // namespace donex

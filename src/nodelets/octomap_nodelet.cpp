@@ -1,0 +1,66 @@
+// donex/OctomapNodelet: `points` (PointCloud2) into an octree in ~fixed_frame, ~cells (PointCloud2) once a second.
+#include <memory>
+
+#include <nodelet/nodelet.h>
+#include <pluginlib/class_list_macros.hpp>
+#include <ros/ros.h>
+#include <tf2_eigen/tf2_eigen.h>
+#include <tf2_ros/buffer.h>
+#include <tf2_ros/transform_listener.h>
+
+#include "donex/ros/octomap_builder.h"
+#include "donex/ros/parameters.h"
+#include "donex/ros/strict_parameters.h"
+
+namespace donex {
+
+class OctomapNodelet : public nodelet::Nodelet {
+ private:
+  void onInit() override {
+    OctomapBuilder::Options options;
+    StrictParameters parameters(getPrivateNodeHandle());
+    parameters.read("resolution", options.resolution);
+    parameters.read("max_range", options.max_range);
+    parameters.read("fixed_frame", fixed_frame_);
+    const std::string faults = joined(parameters.faults());
+    if (!faults.empty()) {
+      NODELET_FATAL("%s", faults.c_str());
+      throw std::invalid_argument(faults);
+    }
+    map_ = std::make_unique<OctomapBuilder>(options);
+    listener_ = std::make_unique<tf2_ros::TransformListener>(tf_, getNodeHandle());
+    publisher_ = getPrivateNodeHandle().advertise<sensor_msgs::PointCloud2>("cells", 1, true);
+    subscriber_ = getNodeHandle().subscribe("points", 10, &OctomapNodelet::onCloud, this);
+    timer_ = getNodeHandle().createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { publish(); });
+  }
+
+  void onCloud(const sensor_msgs::PointCloud2ConstPtr& cloud) {
+    try {
+      const auto transform = tf_.lookupTransform(fixed_frame_, cloud->header.frame_id, cloud->header.stamp);
+      if (!map_->add(*cloud, tf2::transformToEigen(transform))) NODELET_WARN_THROTTLE(5.0, "a cloud cannot be read");
+      stamp_ = cloud->header.stamp;
+    } catch (const tf2::TransformException& error) {
+      NODELET_WARN_THROTTLE(5.0, "a cloud is left out of the map: %s", error.what());
+    }
+  }
+
+  void publish() {
+    std_msgs::Header header;
+    header.frame_id = fixed_frame_;
+    header.stamp = stamp_;
+    if (!stamp_.isZero()) publisher_.publish(map_->occupiedCells(header));
+  }
+
+  std::string fixed_frame_ = "odom";
+  std::unique_ptr<OctomapBuilder> map_;
+  tf2_ros::Buffer tf_;
+  std::unique_ptr<tf2_ros::TransformListener> listener_;
+  ros::Publisher publisher_;
+  ros::Subscriber subscriber_;
+  ros::WallTimer timer_;
+  ros::Time stamp_;
+};
+
+}  // namespace donex
+
+PLUGINLIB_EXPORT_CLASS(donex::OctomapNodelet, nodelet::Nodelet)

@@ -1,0 +1,93 @@
+// Moving things are gone from a map of static echoes, and stay in one of all echoes.
+#include <gtest/gtest.h>
+
+#include "donex/ros/octomap_builder.h"
+#include "donex/ros/simulation_messages.h"
+#include "donex/simulation/simulator.h"
+#include "ros/pipeline_rig.h"
+
+namespace donex {
+namespace {
+
+constexpr int kScans = 22;
+constexpr int kWarmUp = 10;  // scans
+constexpr OctomapBuilder::Options kCoarse{0.3, 20.0};  // [m]
+constexpr std::uint32_t kFirstMoving = 252, kClass = 0xFFFF;
+
+/// A sensor at rest at an intersection, every scan of it in two maps.
+class Maps {
+ public:
+  Maps() {
+    simulation::SimulatorOptions options;
+    options.beams = 32;
+    simulation::Simulator simulator("intersection", options);
+    Config config;
+    config.motion.source = OdometrySource::kNone;
+    tf2::BufferCore tf;
+    Pipeline pipeline(config, tf, events());
+    simulation::SimulatedScan scan;
+    for (int i = 0; i < kScans && simulator.next(scan); ++i) {
+      map_from_cloud_ = scan.odom_from_base * scan.base_from_sensor;
+      if (i >= kWarmUp) rememberMovers(scan);
+      const auto cloud = toCloud(scan, {});
+      if (i < kWarmUp) warm_up_until_ = cloud->header.stamp;
+      pipeline.addCloud(cloud, scan.stamp);
+      pipeline.step(scan.stamp);
+    }
+  }
+
+  OctomapBuilder of_static{kCoarse}, of_all{kCoarse};
+  std::vector<Eigen::Vector3d> ways;  ///< where moving things were
+
+  std::size_t ghostsIn(const OctomapBuilder& map) const {
+    std::size_t ghosts = 0;
+    for (const Eigen::Vector3d& place : ways) ghosts += map.isOccupied(place) ? 1U : 0U;
+    return ghosts;
+  }
+
+ private:
+  PipelineEvents events() {
+    PipelineEvents events;
+    events.labeled = [this](const LabeledScan& scan) { add(scan); };
+    events.dropped = [](DropReason, const std::string& text) { ADD_FAILURE() << text; };
+    events.refused = [](OdometryRefusal, const std::string&) {};
+    events.forgotten = events.strange_times = [](const std::string&) {};
+    return events;
+  }
+  void add(const LabeledScan& scan) {
+    if (scan.cloud->header.stamp <= warm_up_until_) return;
+    EXPECT_TRUE(of_static.add(*selectPart(*scan.cloud, scan.layout, scan.labels, CloudPart::kStatic), map_from_cloud_));
+    EXPECT_TRUE(of_all.add(*scan.cloud, map_from_cloud_));
+  }
+  void rememberMovers(const simulation::SimulatedScan& scan) {
+    for (std::size_t i = 0; i < scan.echoes.size(); i += 3) {
+      const Eigen::Vector3d echo = scan.echoes[i].position.cast<double>();
+      const bool moves = (scan.labels[i] & kClass) >= kFirstMoving;
+      const Eigen::Vector3d place = map_from_cloud_ * echo;
+      const bool is_above_ground = place.z() > 2.0 * kCoarse.resolution;
+      if (moves && is_above_ground && echo.norm() < kCoarse.max_range) ways.push_back(place);
+    }
+  }
+
+  Eigen::Isometry3d map_from_cloud_ = Eigen::Isometry3d::Identity();
+  ros::Time warm_up_until_;
+};
+
+TEST(OctomapBuilder, movingThingsAreGone) {
+  const Maps maps;
+  const std::size_t of_all = maps.ghostsIn(maps.of_all), of_static = maps.ghostsIn(maps.of_static);
+  RecordProperty("ghosts_of_all", std::to_string(of_all));
+  RecordProperty("ghosts_of_static", std::to_string(of_static));
+  EXPECT_GT(of_all, 100U) << "a map of all echoes holds who came by";
+  EXPECT_LT(3 * of_static, of_all);
+  EXPECT_GT(maps.of_static.occupiedCells({})->width, 1000U) << "the street is there";
+}
+
+TEST(OctomapBuilder, unreadableCloudsAreRefused) {
+  OctomapBuilder map({});
+  EXPECT_FALSE(map.add(*test::CloudBuilder().field("x", test::PointField::FLOAT32).size(2).build(),
+                       Eigen::Isometry3d::Identity()));
+}
+
+}  // namespace
+}  // namespace donex
