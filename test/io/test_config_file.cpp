@@ -91,6 +91,7 @@ TEST(ConfigFile, TheFilesOfThePackageAreSound) {
   EXPECT_EQ(printed(readConfigFile(directory / "default.yaml")), printed(Config()));
   EXPECT_EQ(readConfigFile(directory / "paper_2d.yaml").method, Method::kDonex2d);
   EXPECT_EQ(readConfigFile(directory / "paper_3d.yaml").method, Method::kDonex3d);
+  EXPECT_EQ(readConfigFile(directory / "at_rest.yaml").motion.source, OdometrySource::kNone);
 }
 
 struct Bad {
@@ -128,6 +129,7 @@ TEST(ConfigFile, NamesEachFault) {
       {"just text", "config.yaml:1: must be a map of parameter names to values"},
       {"voxel_size: [1", "is not YAML"},
       {"a: b: c", "config.yaml:1: is not YAML"},
+      {",%t $e", "config.yaml: holds more than one YAML document"},
       {"voxel_size: 0.2\n---\nvoxel_size: 0.3", "config.yaml: holds more than one YAML document"},
       {"# nothing here\nx_min: 10\nx_max: 5", "config.yaml:3: x_min is 10 and x_max is 5"},
   };
