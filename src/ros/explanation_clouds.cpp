@@ -1,6 +1,7 @@
 #include "donex/ros/explanation_clouds.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 #include <boost/make_shared.hpp>
@@ -15,7 +16,7 @@ struct Row {
   float x, y, z;
   std::uint32_t rgb;
   std::uint8_t reason;
-  std::uint8_t padding[3];
+  std::array<std::uint8_t, 3> padding;
 };
 static_assert(sizeof(Row) == 20, "the fields below count on it");
 
@@ -91,7 +92,7 @@ sensor_msgs::PointCloud2Ptr explainScan(const LabeledScan& scan) {
 
 sensor_msgs::PointCloud2Ptr cellCloud(const std::vector<Eigen::Vector3f>& centers, const std_msgs::Header& header) {
   auto cloud = emptyCloud(header, centers.size(), sizeof(Eigen::Vector3f));
-  if (!centers.empty()) std::memcpy(cloud->data.data(), centers.data(), cloud->data.size());
+  if (!centers.empty()) std::memcpy(cloud->data.data(), centers.front().data(), cloud->data.size());
   return cloud;
 }
 

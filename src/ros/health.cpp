@@ -1,5 +1,6 @@
 #include "donex/ros/health.h"
 
+#include <array>
 #include <cstdio>
 #include <vector>
 
@@ -8,9 +9,9 @@ namespace {
 
 template <class... Values>
 std::string textOf(const char* format, Values... values) {
-  char text[160];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(), format, values...);
+  return text.data();
 }
 
 void addSilence(const Health& health, std::vector<std::string>& problems) {
