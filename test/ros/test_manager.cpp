@@ -253,6 +253,23 @@ TEST_F(Manager, layersForTheEyeComeWhileSomebodyLooks) {
   EXPECT_EQ(shown["shadowed_cells"]->header.frame_id, "odom");
 }
 
+TEST_F(Manager, twoLidarsInOneManager) {
+  load();
+  const std::string other = nh_.getNamespace() + "/right";
+  const ros::M_string remappings{{nh_.getNamespace() + "/points", other + "_points"}};
+  ASSERT_TRUE(manager_.load(other, "donex/DonexNodelet", remappings, {}));
+  auto clouds = nh_.advertise<sensor_msgs::PointCloud2>("right_points", 10);
+  std::size_t labeled = 0;
+  const boost::function<void(const sensor_msgs::PointCloud2ConstPtr&)> take = [&](const auto&) { ++labeled; };
+  auto subscriber = nh_.subscribe<sensor_msgs::PointCloud2>("right/labeled_points", 10, take);
+  ASSERT_TRUE(waitFor([&] { return clouds.getNumSubscribers() == 1 && subscriber.getNumPublishers() == 1; }));
+  for (int i = 0; i < 5; ++i) {
+    send(100.0 + 0.1 * i);
+    clouds.publish(test::plainCloud(test::ring(), 100.0 + 0.1 * i));
+  }
+  EXPECT_TRUE(waitFor([&] { return labeled == 5 && received_.size() == 5; })) << labeled << ", " << received_.size();
+}
+
 TEST_F(Manager, canBeUnloadedAndLoadedWhileDataFlows) {
   for (int i = 0; i < 4; ++i) {
     load();

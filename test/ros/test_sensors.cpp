@@ -158,5 +158,22 @@ TEST(Sensors, linesOfSightBeginAtTheConfiguredOrigin) {
   EXPECT_TRUE(rig.labeled[0].echoes[0].isApprox(Eigen::Vector3f(3.0F, 1.0F, 0.0F)));
 }
 
+/// Several LiDARs on one topic: each cloud's lines of sight begin where its own frame is.
+TEST(Sensors, eachCloudHasTheOriginOfItsFrame) {
+  PipelineRig rig(test::smallConfig(), false);
+  rig.tf.setTransform(test::transformAt(0.0, "base_link", "left", 1.0, 1.7), "test", true);
+  rig.tf.setTransform(test::transformAt(0.0, "base_link", "right", -1.0, 1.9), "test", true);
+  for (const double stamp : {100.0, 100.05, 100.1, 100.15}) rig.odometry(stamp);
+  for (int i = 0; i < 4; ++i) {
+    const double stamp = 100.0 + 0.05 * i;
+    rig.pipeline.addCloud(test::plainCloud(test::ring(), stamp, i % 2 == 0 ? "left" : "right"), stamp);
+  }
+  rig.run(100.2);
+  ASSERT_EQ(rig.labeled.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(rig.labeled[i].base_from_sensor.translation().x(), i % 2 == 0 ? 1.0 : -1.0);
+  }
+}
+
 }  // namespace
 }  // namespace donex
