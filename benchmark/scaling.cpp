@@ -1,4 +1,4 @@
-// How the cost grows: with the echoes, with smaller voxels, with the region.
+// How the cost grows: with the echoes, with smaller voxels, with the region, and what a second thread helps.
 #include <string>
 
 #include "references.h"
@@ -13,12 +13,14 @@ struct Setting {
   std::size_t echoes = 160000;
   double voxel_size = 0.2;  ///< [m]
   double reach = 50.0;      ///< [m]
+  int threads = 1;
 };
 
 Config configOf(const Setting& setting) {
   Config config = testing::paperConfig(setting.method);
   config.voxel_size = setting.voxel_size;
   config.region = {-setting.reach, setting.reach, -setting.reach, setting.reach, -4.0, 6.0};
+  config.threads = setting.threads;
   return config;
 }
 
@@ -54,6 +56,13 @@ void registerScaling() {
     for (const char* reach : {"25", "50", "75", "100"}) {
       setting.reach = std::stod(reach);
       add("reach", reach, setting);
+    }
+    if (method != Method::kDonex3d) continue;
+    setting.reach = Setting().reach;
+    setting.echoes = 500000;
+    for (const char* threads : {"1", "2"}) {
+      setting.threads = std::stoi(threads);
+      add("threads", threads, setting);
     }
   }
 }

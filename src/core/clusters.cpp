@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "donex/core/line_of_sight.h"
+
 namespace donex {
 
 Clusters::Clusters(double reach, const Settings& settings)
@@ -40,8 +42,8 @@ void Clusters::fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vect
   for (std::size_t i = 0; i < echoes.size(); ++i) {
     const bool in_height = standing[i] != Standing::kOut && heights[i] >= 0.0F && heights[i] <= highest;
     if (!in_height) continue;
-    const int x = static_cast<int>(std::floor((echoes[i].x() - sensor.x()) * per_cell)) + width_ / 2;
-    const int y = static_cast<int>(std::floor((echoes[i].y() - sensor.y()) * per_cell)) + width_ / 2;
+    const int x = floorToInt((echoes[i].x() - sensor.x()) * per_cell) + width_ / 2;
+    const int y = floorToInt((echoes[i].y() - sensor.y()) * per_cell) + width_ / 2;
     const int z = static_cast<int>(heights[i] * per_cell);
     if (x < 0 || x >= width_ || y < 0 || y >= width_) continue;
     if (standing[i] == Standing::kSkirt) {
@@ -79,13 +81,19 @@ void Clusters::join(int cell) {
   const double cells_away = std::hypot(here.x - width_ / 2, here.y - width_ / 2);
   const int across = std::max(1, static_cast<int>(std::ceil(cells_away * settings_.across_angle)));
   const int up = std::max(1, static_cast<int>(std::ceil(cells_away * settings_.up_angle)));
-  for (int z = here.z; z <= std::min(here.z + up, layers_ - 1); ++z) {
-    // The half of the neighbourhood behind this cell finds it from there.
-    for (int y = std::max(here.y - across, 0); y <= std::min(here.y + across, width_ - 1); ++y) {
-      for (int x = std::max(here.x - across, 0); x <= std::min(here.x + across, width_ - 1); ++x) {
-        const int other = cellAt(x, y, z);
-        if (other == kNone || other == cell) continue;
-        cells_[static_cast<std::size_t>(rootOf(other))].parent = rootOf(cell);
+  const int last_z = std::min(here.z + up, layers_ - 1);
+  const int first_x = std::max(here.x - across, 0), last_x = std::min(here.x + across, width_ - 1);
+  const int first_y = std::max(here.y - across, 0), last_y = std::min(here.y + across, width_ - 1);
+  const int root = rootOf(cell);
+  // The half of the neighbourhood behind this cell finds it from there.
+  for (int y = first_y; y <= last_y; ++y) {
+    for (int x = first_x; x <= last_x; ++x) {
+      const int column = column_at_[static_cast<std::size_t>(y * width_ + x)];
+      if (column == kNone) continue;
+      const int* cell_at = cell_in_column_.data() + static_cast<std::ptrdiff_t>(column) * layers_;
+      for (int z = here.z; z <= last_z; ++z) {
+        const bool joins = cell_at[z] != kNone && cells_[static_cast<std::size_t>(cell_at[z])].parent != root;
+        if (joins) cells_[static_cast<std::size_t>(rootOf(cell_at[z]))].parent = root;
       }
     }
   }

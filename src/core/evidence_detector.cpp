@@ -13,6 +13,7 @@ namespace donex {
 namespace {
 
 constexpr float kSkirt = 0.1F;             // [m] from here up to the ground clearance echoes may belong to an object
+constexpr std::size_t kExpectedAhead = 12;  // echoes; long enough for memory to answer
 constexpr double kHistorySpacing = 0.09;   // [s] a 10 Hz sensor's every scan, a 20 Hz sensor's every second
 
 double reachOf(const Region& r) {
@@ -109,13 +110,16 @@ class EvidenceDetector : public Detector {
   void findGround() {
     const bool enabled = config_.evidence.ground;
     const auto clearance = static_cast<float>(config_.evidence.ground_clearance);
-    if (enabled) ground_.estimate(judged_.sensor, judged_.points, judged_.is_echo);
     judged_.heights.resize(judged_.points.size());
+    if (enabled) {
+      ground_.estimate(judged_.sensor, judged_.points, judged_.is_echo);
+      ground_.heightsOf(judged_.points, judged_.heights);
+    }
     judged_.standing.assign(judged_.points.size(), Standing::kOut);
     for (std::size_t i = 0; i < judged_.points.size(); ++i) {
       // Without the step there is no ground to stand above: heights are the window's.
-      const float height = enabled ? ground_.heightOf(judged_.points[i]) : judged_.points[i].z();
-      judged_.heights[i] = height;
+      if (!enabled) judged_.heights[i] = judged_.points[i].z();
+      const float height = judged_.heights[i];
       if (scan_.inside[i] == 0) continue;
       const bool is_above = !enabled || height > clearance;
       if (is_above) judged_.standing[i] = Standing::kIn;
@@ -127,6 +131,8 @@ class EvidenceDetector : public Detector {
     history_.askFrom(judged_.odom_from_points);
     judged_.places.assign(judged_.points.size(), Place::kUnobserved);
     for (std::size_t i = 0; i < judged_.points.size(); ++i) {
+      const std::size_t later = i + kExpectedAhead;
+      if (later < judged_.points.size() && judged_.standing[later] == Standing::kIn) newness_.expect(scan_.echoes[later]);
       if (judged_.standing[i] != Standing::kIn) continue;
       judged_.places[i] = newness_.judge(scan_.echoes[i], judged_.points[i], clock_, history_);
     }

@@ -70,6 +70,7 @@ void Grid2d::take(const Scan& scan, EchoLabels& labels) {
   hit_.clear();
   labels.resize(scan.echoes.size());
   no_echoes_.clear();
+  no_echoes_.reserve(scan.echoes.size());
   new_count_ = 0;
   if (new_voxels_.size() <= scan.echoes.size()) new_voxels_.resize(scan.echoes.size() + 1);
   const bool resamples = window_.compensation() == Compensation::kResample;

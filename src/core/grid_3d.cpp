@@ -8,13 +8,16 @@ namespace {
 constexpr std::uint64_t kAll = ~std::uint64_t{0};
 constexpr int kAhead = 12;  // bricks are asked of memory so many echoes before they are needed
 
+constexpr std::size_t kBlocksAtOnce = 16;  // of the index, by one thread
+
 std::uint64_t maskOf(std::uint32_t bit) { return std::uint64_t{1} << bit; }
 
 }  // namespace
 
 Grid3d::Grid3d(const Config& config)
-    : window_(config), layout_(window_.extent()), bricks_(layout_.slots() + 1) {
+    : window_(config), layout_(window_.extent()), bricks_(layout_.slots() + 1), workers_(config.threads) {
   bricks_.back().remembered = kAll;  // what is outside is never new
+  used_.reserve(layout_.slots() / kSlotsAUsedBrick);
   layout_.scrollTo(window_.minIndex());
 }
 
@@ -67,30 +70,44 @@ Grid3d::Brick& Grid3d::brickAt(std::uint32_t slot, const Index3& in_window) {
 }
 
 void Grid3d::take(const Scan& scan, EchoLabels& labels) {
-  hit(scan, labels);
-  rays_.finish();
+  const Placement placement = window_.placementOf(scan);
+  rays_.begin(placement, scan.echoes);
+  const auto add = [&](std::size_t first, const EchoBlock& block) { rays_.add(first, block); };
+  if (workers_.threads() == 1) {
+    hit(scan, placement, labels, add);
+    rays_.finish();
+  } else {
+    // Hits and rays need nothing of each other but the echoes' places, which are quicker computed twice than handed over.
+    const std::size_t blocks = blocksOf(scan.echoes.size());
+    const auto some = [&](std::size_t i) {
+      forEachBlock(placement, scan.echoes, i * kBlocksAtOnce, std::min((i + 1) * kBlocksAtOnce, blocks), add);
+    };
+    const auto index = [&] {
+      workers_.each((blocks + kBlocksAtOnce - 1) / kBlocksAtOnce, some);
+      rays_.finish();
+    };
+    workers_.both([&] { hit(scan, placement, labels, [](std::size_t, const EchoBlock&) {}); }, index);
+  }
   remember([&](std::uint64_t candidates, const Index3& corner) { return rays_.seenThrough(candidates, corner); });
 }
 
-void Grid3d::hit(const Scan& scan, EchoLabels& labels) {
-  const Placement placement = window_.placementOf(scan);
-  rays_.begin(placement, scan.echoes);
-  labels.resize(scan.echoes.size());
+void Grid3d::beginHits(std::size_t echoes, EchoLabels& labels) {
+  labels.resize(echoes);
   hit_voxels_.clear();
   no_echoes_.clear();
+  no_echoes_.reserve(echoes);
   new_count_ = 0;
-  if (new_voxels_.size() <= scan.echoes.size()) new_voxels_.resize(scan.echoes.size() + 1);
+  if (new_voxels_.size() <= echoes) new_voxels_.resize(echoes + 1);
+}
+
+void Grid3d::hit(std::size_t first, const EchoBlock& block, EchoLabels& labels) {
+  block.appendNoEchoes(first, no_echoes_);
   const bool resamples = window_.compensation() == Compensation::kResample;
-  const auto judge = [&](std::size_t first, const EchoBlock& block) {
-    block.appendNoEchoes(first, no_echoes_);
-    rays_.add(first, block);
-    resamples ? hit<true>(first, block, labels) : hit<false>(first, block, labels);
-  };
-  forEachBlock(placement, scan.echoes, 0, blocksOf(scan.echoes.size()), judge);
+  resamples ? hitInOrder<true>(first, block, labels) : hitInOrder<false>(first, block, labels);
 }
 
 template <bool keep_order>
-void Grid3d::hit(std::size_t first, const EchoBlock& block, EchoLabels& labels) {
+void Grid3d::hitInOrder(std::size_t first, const EchoBlock& block, EchoLabels& labels) {
   BlockSlots at;
   layout_.locate(block, at);
   std::uint8_t* dynamic = labels.dynamic.data() + first;
@@ -151,6 +168,11 @@ std::vector<Index3> Grid3d::remembered() const {
     }
   }
   return voxels;
+}
+
+double Grid3d::bytesFor(double slots, double echoes) {
+  return slots * (sizeof(Brick) + static_cast<double>(sizeof(Used)) / kSlotsAUsedBrick) + RayIndex::bytesFor(echoes) +
+         echoes * (sizeof(Index3) + sizeof(std::uint32_t));
 }
 
 std::size_t Grid3d::memoryBytes() const {

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+
+#include "simd.h"
 
 namespace donex {
 namespace {
@@ -18,9 +19,20 @@ constexpr float kStartRadius = 7.0F;     // [m] the cells in it tell where the g
 constexpr std::size_t kStartCells = 24;  // but never fewer than these
 constexpr float kNone = std::numeric_limits<float>::infinity();
 
-int squaredDistance(int cell, int width) {
-  const int x = cell % width - width / 2, y = cell / width - width / 2;
-  return x * x + y * y;
+/// The number of every echo's cell, or -1 outside the map.
+DONEX_WIDE_LOOPS void findCells(const Eigen::Vector3f& sensor, int width, const Eigen::Vector3f* echoes, std::size_t count,
+                                int* cells) {
+  const float sensor_x = sensor.x(), sensor_y = sensor.y();
+  const float* xyz = reinterpret_cast<const float*>(echoes);
+  const int middle = width / 2;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float across = std::floor((xyz[3 * i] - sensor_x) / kCell + 0.5F);
+    const float along = std::floor((xyz[3 * i + 1] - sensor_y) / kCell + 0.5F);
+    const auto half = static_cast<float>(middle);
+    const bool inside = static_cast<int>(std::abs(across) <= half) & static_cast<int>(std::abs(along) <= half);  // not NaN
+    const int x = static_cast<int>(inside ? across : 0.0F) + middle, y = static_cast<int>(inside ? along : 0.0F) + middle;
+    cells[i] = inside ? y * width + x : -1;
+  }
 }
 
 }  // namespace
@@ -30,18 +42,18 @@ Ground::Ground(double reach) : width_(2 * static_cast<int>(std::ceil(reach / sta
   lowest_.resize(cells);
   ground_.resize(cells, kNone);
   unseen_.resize(cells, 0.0F);
-  outwards_.resize(cells);
-  std::iota(outwards_.begin(), outwards_.end(), 0);
+  for (int y = -(width_ / 2); y <= width_ / 2; ++y) {
+    for (int x = -(width_ / 2); x <= width_ / 2; ++x) {
+      outwards_.push_back({static_cast<std::int16_t>(x), static_cast<std::int16_t>(y)});
+    }
+  }
   std::stable_sort(outwards_.begin(), outwards_.end(),
-                   [&](int a, int b) { return squaredDistance(a, width_) < squaredDistance(b, width_); });
-}
-
-int Ground::cellOf(const Eigen::Vector3f& point) const {
-  const Eigen::Vector3f offset = (point - sensor_) / kCell;
-  const int x = static_cast<int>(std::floor(offset.x() + 0.5F)) + width_ / 2;
-  const int y = static_cast<int>(std::floor(offset.y() + 0.5F)) + width_ / 2;
-  const bool inside = x >= 0 && x < width_ && y >= 0 && y < width_;
-  return inside ? y * width_ + x : -1;
+                   [](const Cell& a, const Cell& b) { return a.squaredDistance() < b.squaredDistance(); });
+  for (int y = -kReach; y <= kReach; ++y) {
+    for (int x = -kReach; x <= kReach; ++x) {
+      around_.push_back({x, y, kCell * std::sqrt(static_cast<float>(x * x + y * y))});
+    }
+  }
 }
 
 void Ground::estimate(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
@@ -49,17 +61,17 @@ void Ground::estimate(const Eigen::Vector3f& sensor, const std::vector<Eigen::Ve
   sensor_ = sensor;
   std::fill(lowest_.begin(), lowest_.end(), kNone);
   std::fill(ground_.begin(), ground_.end(), kNone);
+  cell_of_.resize(echoes.size());
+  findCells(sensor_, width_, echoes.data(), echoes.size(), cell_of_.data());
   for (std::size_t i = 0; i < echoes.size(); ++i) {
-    if (is_echo[i] == 0) continue;
-    const int cell = cellOf(echoes[i]);
-    if (cell < 0) continue;
-    float& lowest = lowest_[static_cast<std::size_t>(cell)];
+    if (is_echo[i] == 0 || cell_of_[i] < 0) continue;
+    float& lowest = lowest_[static_cast<std::size_t>(cell_of_[i])];
     lowest = std::min(lowest, echoes[i].z());
   }
   const float start = startingHeight();
   if (start == kNone) return;
-  for (const int cell : outwards_) {
-    const auto i = static_cast<std::size_t>(cell);
+  for (const Cell& cell : outwards_) {
+    const std::size_t i = indexOf(cell.x, cell.y);
     const Continuation expected = continueTo(cell, start);
     const float step = std::min(kRoughness + kSlope * expected.unseen, kLargestStep);
     const bool continues = std::abs(lowest_[i] - expected.height) < step;
@@ -71,10 +83,10 @@ void Ground::estimate(const Eigen::Vector3f& sensor, const std::vector<Eigen::Ve
 float Ground::startingHeight() {
   near_.clear();
   constexpr auto kRadius = static_cast<int>(kStartRadius / kCell);
-  for (const int cell : outwards_) {
-    const bool enough = near_.size() >= kStartCells && squaredDistance(cell, width_) > kRadius * kRadius;
+  for (const Cell& cell : outwards_) {
+    const bool enough = near_.size() >= kStartCells && cell.squaredDistance() > kRadius * kRadius;
     if (enough) break;
-    const float lowest = lowest_[static_cast<std::size_t>(cell)];
+    const float lowest = lowest_[indexOf(cell.x, cell.y)];
     if (lowest != kNone) near_.push_back(lowest);
   }
   if (near_.empty()) return kNone;
@@ -84,37 +96,45 @@ float Ground::startingHeight() {
   return *third;
 }
 
-Ground::Continuation Ground::continueTo(int cell, float start) const {
-  const int x = cell % width_, y = cell / width_;
-  const int own_distance = squaredDistance(cell, width_);
+Ground::Continuation Ground::continueTo(const Cell& cell, float start) const {
+  const int half = width_ / 2;
+  const bool at_edge = std::max(std::abs(cell.x), std::abs(cell.y)) > half - kReach;
   float sum = 0.0F, weights = 0.0F, unseen = kNone;
-  for (int dy = -kReach; dy <= kReach; ++dy) {
-    for (int dx = -kReach; dx <= kReach; ++dx) {
-      const int nx = x + dx, ny = y + dy;
-      if (nx < 0 || nx >= width_ || ny < 0 || ny >= width_) continue;
-      const int neighbour = ny * width_ + nx;
-      if (squaredDistance(neighbour, width_) >= own_distance) continue;
-      const float away = kCell * std::sqrt(static_cast<float>(dx * dx + dy * dy));
-      const float since_seen = unseen_[static_cast<std::size_t>(neighbour)] + away;
-      const float weight = 1.0F / (since_seen * since_seen);
-      sum += weight * ground_[static_cast<std::size_t>(neighbour)];
-      weights += weight;
-      unseen = std::min(unseen, since_seen);
-    }
+  for (const Neighbour& by : around_) {
+    const bool is_nearer = 2 * (cell.x * by.x + cell.y * by.y) + by.x * by.x + by.y * by.y < 0;
+    if (!is_nearer) continue;
+    if (at_edge && std::max(std::abs(cell.x + by.x), std::abs(cell.y + by.y)) > half) continue;
+    const std::size_t neighbour = indexOf(cell.x + by.x, cell.y + by.y);
+    const float since_seen = unseen_[neighbour] + by.away;
+    const float weight = 1.0F / (since_seen * since_seen);
+    sum += weight * ground_[neighbour];
+    weights += weight;
+    unseen = std::min(unseen, since_seen);
   }
   if (weights > 0.0F) return {sum / weights, unseen};
   return {start, kStartUncertainty};
 }
 
 float Ground::heightOf(const Eigen::Vector3f& point) const {
-  const int cell = cellOf(point);
+  int cell = -1;
+  findCells(sensor_, width_, &point, 1, &cell);
+  return heightIn(cell, point.z());
+}
+
+void Ground::heightsOf(const std::vector<Eigen::Vector3f>& echoes, std::vector<float>& heights) const {
+  heights.resize(echoes.size());
+  for (std::size_t i = 0; i < echoes.size(); ++i) heights[i] = heightIn(cell_of_[i], echoes[i].z());
+}
+
+float Ground::heightIn(int cell, float z) const {
   if (cell < 0) return kNone;
   const float ground = ground_[static_cast<std::size_t>(cell)];
-  return ground == kNone ? kNone : point.z() - ground;
+  return ground == kNone ? kNone : z - ground;
 }
 
 std::size_t Ground::memoryBytes() const {
-  return outwards_.capacity() * sizeof(int) + (lowest_.capacity() + ground_.capacity() + unseen_.capacity() + near_.capacity()) * sizeof(float);
+  return outwards_.capacity() * sizeof(Cell) + around_.capacity() * sizeof(Neighbour) + cell_of_.capacity() * sizeof(int) +
+         (lowest_.capacity() + ground_.capacity() + unseen_.capacity() + near_.capacity()) * sizeof(float);
 }
 
 }  // namespace donex

@@ -49,6 +49,8 @@ DONEX_WIDE_LOOPS void project(const Eigen::Vector3f& origin, float row_low, floa
 
 }  // namespace
 
+RayIndex::RayIndex() : bins_(kBins + 1) {}
+
 void RayIndex::Rays::resize(std::size_t rays) {
   across.resize(rays);
   up.resize(rays);
@@ -104,6 +106,11 @@ RayIndex::Rows RayIndex::rowsOfScan() const {
   high = std::min(high, kSteepest);
   constexpr float kLeastSpan = 0.1F;
   return low <= high ? Rows{low, kUp / std::max(high - low, kLeastSpan)} : Rows{};
+}
+
+double RayIndex::bytesFor(double echoes) {
+  constexpr double kAnEcho = 2 * (3 * sizeof(float) + sizeof(std::uint32_t));
+  return kAnEcho * echoes + static_cast<double>(kBins * sizeof(Bin));
 }
 
 std::size_t RayIndex::memoryBytes() const {

@@ -12,6 +12,7 @@ void SightHistory::add(const Scan& scan, const std::vector<std::uint8_t>& is_ech
   }
   next.stamp = scan.stamp;
   next.sensor_from_odom = scan.odomFromSensor().inverse();
+  if (!kept_.empty()) next.image.takeWorkspace(kept_.back().image);
   next.image.build(scan.echoes, is_echo, reading_);
   kept_.push_back(std::move(next));
 }

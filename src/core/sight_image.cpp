@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "simd.h"
+
 namespace donex {
 namespace {
 
@@ -15,29 +17,46 @@ constexpr float kNearest = 0.3F;         // [m] nothing is asked nearer to the s
 constexpr float kPi = 3.14159265F;
 
 /// atan2 to 1e-4 rad, the same on every machine; monotone within an octant, which is all a column needs.
-float azimuthOf(float y, float x) {
+inline float azimuthOf(float y, float x) {
   const float ax = std::abs(x), ay = std::abs(y);
   const float a = std::min(ax, ay) / std::max(ax, ay);
   const float s = a * a;
   float angle = ((-0.0464964749F * s + 0.15931422F) * s - 0.327622764F) * s * a + a;
-  if (ay > ax) angle = 0.5F * kPi - angle;
-  if (x < 0.0F) angle = kPi - angle;
+  angle = ay > ax ? 0.5F * kPi - angle : angle;
+  angle = x < 0.0F ? kPi - angle : angle;
   return y < 0.0F ? -angle : angle;
 }
 
-}  // namespace
+struct Projected {
+  bool valid;
+  int column, row;
+  float range;
+};
 
-bool SightImage::project(const Eigen::Vector3f& point, Pixel& pixel) {
-  const float horizontal = std::sqrt(point.x() * point.x() + point.y() * point.y());
-  if (!(horizontal > kNearest)) return false;
-  const float slope = point.z() / horizontal;
-  if (!(std::abs(slope) < kSteepest)) return false;
-  const float turn = (azimuthOf(point.y(), point.x()) + kPi) * (kColumns / (2.0F * kPi));
-  pixel.column = static_cast<int>(turn) & (kColumns - 1);
-  pixel.row = static_cast<int>((slope + kSteepest) / kRowHeight);
-  pixel.range = std::sqrt(horizontal * horizontal + point.z() * point.z());
-  return true;
+/// Column and row are 0 where the point is not valid: nothing is asked so near to the sensor's axis, or so steeply.
+inline Projected project(float x, float y, float z) {
+  const float horizontal = std::sqrt(x * x + y * y);
+  const float slope = z / horizontal;
+  const bool valid = static_cast<int>(horizontal > kNearest) & static_cast<int>(std::abs(slope) < kSteepest);
+  const float turn = (azimuthOf(y, x) + kPi) * (kColumns / (2.0F * kPi));
+  const float row = (slope + kSteepest) / kRowHeight;
+  return {valid, static_cast<int>(valid ? turn : 0.0F) & (kColumns - 1), static_cast<int>(valid ? row : 0.0F),
+          std::sqrt(horizontal * horizontal + z * z)};
 }
+
+DONEX_WIDE_LOOPS void projectAll(const Eigen::Vector3f* echoes, const std::uint8_t* is_echo, std::size_t count,
+                                 std::int32_t* columns, std::int32_t* rows, float* ranges) {
+  const float* xyz = reinterpret_cast<const float*>(echoes);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Projected pixel = project(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]);
+    const bool valid = static_cast<int>(pixel.valid) & static_cast<int>(is_echo[i] != 0);
+    columns[i] = pixel.column;
+    rows[i] = valid ? pixel.row : -1;
+    ranges[i] = std::min(std::max(pixel.range / kRangeStep, 1.0F), 65535.0F);
+  }
+}
+
+}  // namespace
 
 void SightImage::build(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo,
                        const Reading& reading) {
@@ -49,22 +68,21 @@ void SightImage::build(const std::vector<Eigen::Vector3f>& echoes, const std::ve
 }
 
 void SightImage::collect(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo) {
-  pixels_.clear();
+  const std::size_t count = echoes.size();
+  pixels_.resize(count);
+  projectAll(echoes.data(), is_echo.data(), count, pixels_.columns.data(), pixels_.rows.data(), pixels_.ranges.data());
   int lowest = std::numeric_limits<int>::max(), highest = -1;
-  for (std::size_t i = 0; i < echoes.size(); ++i) {
-    Pixel pixel;
-    if (is_echo[i] == 0 || !project(echoes[i], pixel)) continue;
-    lowest = std::min(lowest, pixel.row);
-    highest = std::max(highest, pixel.row);
-    pixels_.push_back(pixel);
+  for (const std::int32_t row : pixels_.rows) {
+    lowest = std::min(lowest, row < 0 ? lowest : row);
+    highest = std::max(highest, row);
   }
   first_row_ = highest < 0 ? 0 : lowest;
   rows_ = highest < 0 ? 0 : highest - lowest + 1;
   nearest_.assign(static_cast<std::size_t>(kColumns) * static_cast<std::size_t>(rows_), 0);
-  for (const Pixel& pixel : pixels_) {
-    const float steps = std::clamp(pixel.range / kRangeStep, 1.0F, 65535.0F);
-    const auto range = static_cast<Range>(steps);
-    Range& nearest = nearest_[static_cast<std::size_t>(pixel.column * rows_ + pixel.row - first_row_)];
+  for (std::size_t i = 0; i < count; ++i) {
+    if (pixels_.rows[i] < 0) continue;
+    const auto range = static_cast<Range>(pixels_.ranges[i]);
+    Range& nearest = nearest_[static_cast<std::size_t>(pixels_.columns[i] * rows_ + pixels_.rows[i] - first_row_)];
     if (nearest == 0 || range < nearest) nearest = range;
   }
 }
@@ -122,8 +140,8 @@ void SightImage::erode() {
 }
 
 SightImage::Sight SightImage::at(const Eigen::Vector3f& point, float margin) const {
-  Pixel pixel;
-  if (!project(point, pixel)) return Sight::kUnknown;
+  const Projected pixel = project(point.x(), point.y(), point.z());
+  if (!pixel.valid) return Sight::kUnknown;
   const int row = pixel.row - first_row_;
   if (row < 0 || row >= rows_) return Sight::kUnknown;
   const Range nearest = nearest_[static_cast<std::size_t>(pixel.column * rows_ + row)];
@@ -134,7 +152,7 @@ SightImage::Sight SightImage::at(const Eigen::Vector3f& point, float margin) con
 }
 
 std::size_t SightImage::memoryBytes() const {
-  return (nearest_.capacity() + scratch_.capacity()) * sizeof(Range) + pixels_.capacity() * sizeof(Pixel);
+  return (nearest_.capacity() + scratch_.capacity()) * sizeof(Range) + pixels_.bytes();
 }
 
 }  // namespace donex

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "donex/core/memory_bound.h"
 #include "donex/io/comparison.h"
 #include "donex/io/sequence.h"
 #include "program.h"
@@ -60,6 +61,9 @@ void report(const Run& run, const Config& config, const DriveRun& drive, bool ha
              1e3 * quantile(drive.cpuTimes(), 0.5));
   fmt::print("echoes a second: {:.1f} million\n", 1e-6 * static_cast<double>(run.echoes) / seconds);
   fmt::print("peak memory: {}, of it the grid's {}\n", megabytes(peakMemory()), megabytes(drive.memoryBytes()));
+  const std::size_t a_scan = run.echoes / std::max<std::size_t>(drive.times().size(), 1);
+  fmt::print("memory asked for beforehand, for scans of {} echoes: {}\n", a_scan,
+             megabytes(static_cast<std::size_t>(memoryBound(config, a_scan))));
   if (run.evaluation.scans() > 0) {
     fmt::print("\n{}", formatEvaluations({{"this run", &run.evaluation}}));
   } else {

@@ -135,6 +135,28 @@ TEST_P(AgainstOracle, Detector2d) {
   }
 }
 
+TEST(Threads, DoNotChangeAnyLabel) {
+  Config config = smallGrid(Method::kDonex3d, Compensation::kScroll, 0.25);
+  const auto alone = makeDetector(config);
+  for (const int threads : {2, 3}) {
+    config.threads = threads;
+    const auto together = makeDetector(config);
+    alone->reset();
+    testing::RandomScans scans(7, config.voxel_size, 12.0F);
+    EchoLabels expected, labels;
+    std::size_t dynamic = 0;
+    for (int k = 0; k < kScans; ++k) {
+      const Scan scan = scans.next(40000);
+      alone->process(scan, expected);
+      together->process(scan, labels);
+      ASSERT_EQ(labels.dynamic, expected.dynamic) << threads << " threads, scan " << k;
+      ASSERT_EQ(labels.observed, expected.observed);
+      for (const std::uint8_t label : labels.dynamic) dynamic += label;
+    }
+    EXPECT_GT(dynamic, 1000U);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Random, AgainstOracle, ::testing::ValuesIn(cases()));
 
 }  // namespace

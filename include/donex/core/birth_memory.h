@@ -47,6 +47,13 @@ class BirthMemory {
     }
   }
 
+  /// Asks memory for a record that will be wanted soon.
+  void expect(const Index3& in_window) const {
+    const BrickBit at = layout_.locate(in_window);
+    const std::uint32_t brick = brick_of_slot_[at.slot];
+    if (brick != kNoBrick) __builtin_prefetch(&bricks_[brick].records[at.bit], 1);
+  }
+
   void reset();
   const GridWindow& window() const { return window_; }
   std::size_t memoryBytes() const;

@@ -118,6 +118,7 @@ struct Config {
   Region region;
   Compensation compensation = Compensation::kScroll;
   int memory_limit = 1000;  // [MB]
+  int threads = 1;
   EvidenceConfig evidence;
   ObjectConfig objects;
   MotionConfig motion;
@@ -157,6 +158,7 @@ void visitParameters(Config& config, Visitor&& visit) {
   visit(ParameterInfo{"compensation", "", "voxel shift of the paper's rule: scroll the grid in the odometry frame's axes, or resample its contents into the vehicle frame; with evidence the grid always scrolls", true},
         config.compensation);
   visit(ParameterInfo{"memory_limit", "MB", "largest grid that is accepted; region and voxel size decide what a grid needs", true}, config.memory_limit, 10, 100000);
+  visit(ParameterInfo{"threads", "", "threads that the paper's 3D grid may use; labels do not depend on it", true}, config.threads, 1, 64);
 
   EvidenceConfig& e = config.evidence;
   visit(ParameterInfo{"free_evidence", "", "a place counts as new only where earlier scans saw it free", true}, e.free_evidence);

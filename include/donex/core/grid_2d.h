@@ -34,6 +34,10 @@ class Grid2d {
   /// Remembered range of a cell of the window, heights as the window's.
   HeightRange rangeAt(int x, int y) const;
   std::size_t memoryBytes() const;
+  /// What memoryBytes will be, for scans of so many echoes [bytes]. Contents that are resampled come on top.
+  static double bytesFor(double slots, double echoes) {
+    return slots * sizeof(Cell) + echoes * (sizeof(Index3) + sizeof(std::uint32_t));
+  }
 
  private:
   struct Cell {

@@ -1,11 +1,14 @@
 // The 3D grid's memory: which voxels still carry an identifier (paper, 3D: shadowing, de-shadowing).
 #pragma once
 
+#include <algorithm>
+#include <functional>
 #include <vector>
 
 #include "donex/core/brick_layout.h"
 #include "donex/core/grid_window.h"
 #include "donex/core/ray_index.h"
+#include "donex/core/workers.h"
 
 namespace donex {
 
@@ -33,16 +36,22 @@ class Grid3d {
   /// Remembered voxels, in the window; order is not specified.
   std::vector<Index3> remembered() const;
   std::size_t memoryBytes() const;
+  /// What memoryBytes will be, for scans of so many echoes [bytes]. Contents that are resampled come on top.
+  static double bytesFor(double slots, double echoes);
 
  protected:
-  /// The first half of take: marks H_k and judges.
-  void hit(const Scan& scan, EchoLabels& labels);
+  /// The first half of take: marks H_k and judges. `also(first, block)` is shown the blocks, too.
+  template <class Also>
+  void hit(const Scan& scan, const Placement& placement, EchoLabels& labels, Also&& also);
   /// The second: M_k = H_k u { v in M' \ H_k : v not seen through }. `seen(candidates, corner)` says which of a brick's
-  /// candidates are, as bits of the voxels from `corner` upwards.
+  /// candidates are, as bits of the voxels from `corner` upwards; it is asked by several threads.
   template <class Seen>
   void remember(Seen&& seen);
 
  private:
+  /// Surfaces fill far fewer bricks than one in so many: room for them is there from the beginning.
+  static constexpr std::size_t kSlotsAUsedBrick = 8;
+
   struct Brick {
     std::uint64_t remembered = 0, hit = 0;  ///< a bit a voxel
   };
@@ -59,8 +68,12 @@ class Grid3d {
 
   void scroll(const Eigen::Isometry3d& odom_from_base);
   void resample(const Eigen::Isometry3d& odom_from_base);
-  template <bool keep_order>
+  void beginHits(std::size_t echoes, EchoLabels& labels);
   void hit(std::size_t first, const EchoBlock& block, EchoLabels& labels);
+  template <bool keep_order>
+  void hitInOrder(std::size_t first, const EchoBlock& block, EchoLabels& labels);
+  template <class Seen>
+  std::size_t rememberPart(std::size_t first, std::size_t last, Seen& seen);
   void forgetHitContents();
   void rememberContents();
   Brick& brickAt(std::uint32_t slot, const Index3& in_window);
@@ -70,6 +83,8 @@ class Grid3d {
   BrickLayout layout_;
   std::vector<Brick> bricks_;  ///< by slot; one more for the echoes outside
   std::vector<Used> used_;     ///< each once
+  std::vector<std::size_t> parts_;  ///< how many of each part of used_ stay
+  Workers workers_;
   RayIndex rays_;
   std::vector<Index3> new_voxels_;  ///< the first new_count_ of them
   std::size_t new_count_ = 0;
@@ -78,13 +93,23 @@ class Grid3d {
   std::vector<Index3> hit_voxels_;   ///< resample: in the order of their first echoes
 };
 
+template <class Also>
+void Grid3d::hit(const Scan& scan, const Placement& placement, EchoLabels& labels, Also&& also) {
+  beginHits(scan.echoes.size(), labels);
+  forEachBlock(placement, scan.echoes, 0, blocksOf(scan.echoes.size()),
+               [&](std::size_t first, const EchoBlock& block) {
+                 hit(first, block, labels);
+                 also(first, block);
+               });
+}
+
+/// Bricks `first` to `last` (not included) of used_; those that stay come first then, and are counted.
 template <class Seen>
-void Grid3d::remember(Seen&& seen) {
+std::size_t Grid3d::rememberPart(std::size_t first, std::size_t last, Seen& seen) {
   constexpr std::size_t kAhead = 12;  // bricks are asked of memory so long before they are needed
-  forgetHitContents();
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < used_.size(); ++i) {
-    if (i + kAhead < used_.size()) __builtin_prefetch(&bricks_[used_[i + kAhead].slot], 1);
+  std::size_t kept = first;
+  for (std::size_t i = first; i < last; ++i) {
+    if (i + kAhead < last) __builtin_prefetch(&bricks_[used_[i + kAhead].slot], 1);
     const Used& used = used_[i];
     Brick& brick = bricks_[used.slot];
     const std::uint64_t candidates = brick.remembered & ~brick.hit;
@@ -93,7 +118,26 @@ void Grid3d::remember(Seen&& seen) {
     brick.hit = 0;
     if (brick.remembered != 0) used_[kept++] = used;
   }
-  used_.resize(kept);
+  return kept - first;
+}
+
+template <class Seen>
+void Grid3d::remember(Seen&& seen) {
+  forgetHitContents();
+  // More parts than threads: some parts are much more work than others.
+  const std::size_t parts = workers_.threads() == 1 ? 1 : 16 * static_cast<std::size_t>(workers_.threads());
+  const auto begin_of = [parts, all = used_.size()](std::size_t part) { return all * part / parts; };
+  parts_.resize(parts);
+  const auto remember_part = [&](std::size_t part) {
+    parts_[part] = rememberPart(begin_of(part), begin_of(part + 1), seen);
+  };
+  workers_.each(parts, std::ref(remember_part));  // by reference: a copy of it would be allocated
+  auto end = used_.begin();
+  for (std::size_t part = 0; part < parts; ++part) {
+    const auto first = used_.begin() + static_cast<std::ptrdiff_t>(begin_of(part));
+    end = std::move(first, first + static_cast<std::ptrdiff_t>(parts_[part]), end);
+  }
+  used_.erase(end, used_.end());
   rememberContents();
 }
 

@@ -22,21 +22,38 @@ class Ground {
   /// Height above the ground [m]; infinite outside the map, or where no ground was found at all.
   float heightOf(const Eigen::Vector3f& point) const;
 
+  /// The same of every echo of the last estimate (the same points again).
+  void heightsOf(const std::vector<Eigen::Vector3f>& echoes, std::vector<float>& heights) const;
+
   std::size_t memoryBytes() const;
 
  private:
-  int cellOf(const Eigen::Vector3f& point) const;
+  struct Cell {
+    std::int16_t x, y;  ///< from the sensor's
+    int squaredDistance() const { return x * x + y * y; }
+  };
+  struct Neighbour {
+    int x, y;
+    float away;  ///< [m]
+  };
+
+  std::size_t indexOf(int x, int y) const {
+    return static_cast<std::size_t>((y + width_ / 2) * width_ + x + width_ / 2);
+  }
+  float heightIn(int cell, float z) const;
   float startingHeight();
   /// What the ground of nearer cells lets expect.
   struct Continuation {
     float height;
     float unseen;  ///< how far away the ground was last seen [m]
   };
-  Continuation continueTo(int cell, float start) const;
+  Continuation continueTo(const Cell& cell, float start) const;
 
   int width_;                            ///< cells along an edge
   Eigen::Vector3f sensor_ = Eigen::Vector3f::Zero();
-  std::vector<int> outwards_;            ///< cells by distance from the sensor
+  std::vector<Cell> outwards_;           ///< by distance from the sensor
+  std::vector<Neighbour> around_;
+  std::vector<int> cell_of_;             ///< by echo, -1 outside
   std::vector<float> lowest_, ground_;   ///< by cell [m]
   std::vector<float> unseen_;            ///< by cell: how far the ground is only continued [m]
   std::vector<float> near_;

@@ -43,6 +43,9 @@ class Newness3d {
 
   void shift(const Eigen::Isometry3d& odom_from_base) { memory_.shift(odom_from_base); }
 
+  /// Asks memory for what an echo's judgement will need.
+  void expect(const Eigen::Vector3f& in_window) const { memory_.expect(voxelOf(in_window)); }
+
   /// Judges one echo of the present scan and remembers it. `in_window` in voxel edge lengths, `point` the
   /// same in [m], as the history is asked. A scan's echoes of one voxel share the judgement of the first.
   Place judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& point, const ScanClock& clock,
@@ -67,6 +70,10 @@ class Newness2d {
   explicit Newness2d(const Config& config);
 
   void shift(const Eigen::Isometry3d& odom_from_base);
+  void expect(const Eigen::Vector3f& in_window) const {
+    const Index3 voxel = voxelOf(in_window);
+    __builtin_prefetch(&cells_[cells_layout_.slotOf(voxel.x(), voxel.y())], 1);
+  }
   /// As Newness3d::judge; an echo inside a known range shares that range's judgement.
   Place judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& point, const ScanClock& clock,
               const SightHistory& history);

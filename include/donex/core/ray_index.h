@@ -18,6 +18,8 @@ namespace donex {
 /// the margin are put to LineOfSight. So every answer is that of the traversal.
 class RayIndex {
  public:
+  RayIndex();
+
   /// Begins a scan: where it lies, and its echoes in the sensor's frame, which must stay until the last question.
   void begin(const Placement& placement, const std::vector<Eigen::Vector3f>& echoes);
   /// Takes a block of the scan, whose first echo is number `first`. Different blocks may be taken at the same time.
@@ -33,6 +35,8 @@ class RayIndex {
   void reset() { next_rows_ = Rows{}; }
 
   std::size_t memoryBytes() const;
+  /// What memoryBytes will be, for scans of so many echoes [bytes].
+  static double bytesFor(double echoes);
 
  private:
   static constexpr int kSides = 4;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -26,6 +27,12 @@ class SightImage {
   void build(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo,
              const Reading& reading);
 
+  /// Takes over what another image's build needed and its answers do not.
+  void takeWorkspace(SightImage& other) {
+    scratch_ = std::move(other.scratch_);
+    pixels_ = std::move(other.pixels_);
+  }
+
   enum class Sight { kUnknown, kFree, kSurface, kHidden };
 
   /// What the scan says of a point of its sensor frame [m]: free where it saw at least `margin` [m]
@@ -35,12 +42,19 @@ class SightImage {
   std::size_t memoryBytes() const;
 
  private:
-  struct Pixel {
-    int column, row;
-    float range;
+  /// By echo: where it lies in the image; row -1 where nowhere.
+  struct Pixels {
+    std::vector<std::int32_t> columns, rows;
+    std::vector<float> ranges;  ///< [kRangeStep]
+
+    void resize(std::size_t count) {
+      columns.resize(count);
+      rows.resize(count);
+      ranges.resize(count);
+    }
+    std::size_t bytes() const { return 3 * columns.capacity() * sizeof(float); }
   };
 
-  static bool project(const Eigen::Vector3f& point, Pixel& pixel);
   void collect(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo);
   void fillBetweenBeams(int largest_gap);
   void fillBetweenColumns();
@@ -51,7 +65,7 @@ class SightImage {
   int first_row_ = 0, rows_ = 0;  ///< the part of the image that the sensor covers
   std::vector<Range> nearest_;    ///< by column, then row
   std::vector<Range> scratch_;
-  std::vector<Pixel> pixels_;
+  Pixels pixels_;
 };
 
 }  // namespace donex

@@ -17,16 +17,18 @@ class ZBufferGrid : public Grid3d {
   /// As Grid3d::take, but forgets what is remembered, not hit now, and nearer than the surface of its direction by more
   /// than the half diagonal of a voxel.
   void take(const Scan& scan, EchoLabels& labels) {
-    hit(scan, labels);
-    GridScan in_grid;
-    window().enter(scan, in_grid);
+    const Placement placement = window().placementOf(scan);
     image_.clear();
-    for (const Eigen::Vector3f& echo : in_grid.echoes) image_.add(echo - in_grid.origin);
+    hit(scan, placement, labels, [&](std::size_t, const EchoBlock& block) {
+      for (int i = 0; i < block.count; ++i) {
+        image_.add(Eigen::Vector3f(block.x[i], block.y[i], block.z[i]) - placement.origin);
+      }
+    });
     remember([&](std::uint64_t candidates, const Index3& corner) {
       std::uint64_t seen = 0;
       for (; candidates != 0; candidates &= candidates - 1) {
         const int bit = __builtin_ctzll(candidates);
-        if (seesThrough(BrickLayout::voxelOfBit(corner, bit), in_grid.origin)) seen |= std::uint64_t{1} << bit;
+        if (seesThrough(BrickLayout::voxelOfBit(corner, bit), placement.origin)) seen |= std::uint64_t{1} << bit;
       }
       return seen;
     });

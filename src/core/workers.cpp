@@ -1,0 +1,35 @@
+#include "donex/core/workers.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+#include <tbb/task_arena.h>
+
+namespace donex {
+
+struct Workers::Arena {
+  explicit Arena(int threads) : arena(threads) {}
+  tbb::task_arena arena;
+};
+
+Workers::Workers(int threads) : threads_(threads), arena_(threads > 1 ? std::make_unique<Arena>(threads) : nullptr) {}
+
+Workers::~Workers() = default;
+
+void Workers::each(std::size_t pieces, const std::function<void(std::size_t)>& work) const {
+  if (arena_ == nullptr) {
+    for (std::size_t i = 0; i < pieces; ++i) work(i);
+    return;
+  }
+  arena_->arena.execute([&] { tbb::parallel_for(std::size_t{0}, pieces, work); });
+}
+
+void Workers::both(const std::function<void()>& one, const std::function<void()>& other) const {
+  if (arena_ == nullptr) {
+    one();
+    other();
+    return;
+  }
+  arena_->arena.execute([&] { tbb::parallel_invoke(one, other); });
+}
+
+}  // namespace donex

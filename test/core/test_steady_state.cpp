@@ -1,0 +1,65 @@
+// After the first scans the paper's rule allocates nothing more, and takes the memory that was said before.
+#include <gtest/gtest.h>
+
+#include "donex/core/detector.h"
+#include "donex/core/memory_bound.h"
+#include "support/configs.h"
+#include "support/counted_allocations.h"
+#include "support/random_scans.h"
+
+namespace donex {
+namespace {
+
+constexpr std::size_t kEchoes = 30000;
+
+/// Scans of exactly kEchoes echoes: random ones, repeated.
+std::vector<Scan> scansOfOneSize(double voxel_size) {
+  testing::RandomScans random(11, voxel_size, 40.0F);
+  std::vector<Scan> scans;
+  for (int k = 0; k < 24; ++k) {
+    scans.push_back(random.next(static_cast<int>(kEchoes)));
+    std::vector<Eigen::Vector3f>& echoes = scans.back().echoes;
+    if (echoes.empty()) echoes.emplace_back(5.0F, 0.0F, 0.0F);
+    for (std::size_t i = 0; echoes.size() < kEchoes; ++i) echoes.push_back(echoes[i]);
+  }
+  return scans;
+}
+
+class SteadyState : public ::testing::TestWithParam<Method> {};
+
+TEST_P(SteadyState, AllocatesNothingAScan) {
+  const Config config = testing::paperConfig(GetParam());
+  const std::vector<Scan> scans = scansOfOneSize(config.voxel_size);
+  const auto detector = makeDetector(config);
+  EchoLabels labels;
+  for (std::size_t k = 0; k < 4; ++k) detector->process(scans[k], labels);
+  const std::size_t before = testing::allocations();
+  std::size_t dynamic = 0;
+  for (std::size_t k = 4; k < scans.size(); ++k) {
+    detector->process(scans[k], labels);
+    for (const std::uint8_t label : labels.dynamic) dynamic += label;
+  }
+  EXPECT_EQ(testing::allocations() - before, 0U);
+  EXPECT_GT(dynamic, 1000U);
+}
+
+TEST_P(SteadyState, TakesWhatWasSaid) {
+  for (const double voxel_size : {0.4, 0.2, 0.1}) {
+    Config config = testing::paperConfig(GetParam());
+    config.voxel_size = voxel_size;
+    const std::vector<Scan> scans = scansOfOneSize(voxel_size);
+    EchoLabels labels;
+    labels.resize(kEchoes);
+    const std::size_t before = testing::liveBytes();
+    const auto detector = makeDetector(config);
+    for (const Scan& scan : scans) detector->process(scan, labels);
+    const auto taken = static_cast<double>(testing::liveBytes() - before);
+    EXPECT_NEAR(memoryBound(config, kEchoes), taken, 0.1 * taken) << voxel_size;
+    EXPECT_NEAR(static_cast<double>(detector->memoryBytes()), taken, 0.1 * taken) << voxel_size;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Paper, SteadyState, ::testing::Values(Method::kDonex2d, Method::kDonex3d));
+
+}  // namespace
+}  // namespace donex

@@ -1,0 +1,11 @@
+// Counts what is allocated: linking the source beside this replaces operator new.
+#pragma once
+
+#include <cstddef>
+
+namespace donex::testing {
+
+std::size_t allocations();  ///< so far
+std::size_t liveBytes();    ///< allocated and not given back, as the allocator rounds them
+
+}  // namespace donex::testing
