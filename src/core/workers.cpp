@@ -1,5 +1,8 @@
 #include "donex/core/workers.h"
 
+#include <algorithm>
+#include <thread>
+
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
@@ -7,7 +10,9 @@
 namespace donex {
 
 struct Workers::Arena {
-  explicit Arena(int threads) : arena(threads) {}
+  /// More threads than cores help nobody.
+  explicit Arena(int threads)
+      : arena(std::min(threads, static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U)))) {}
   tbb::task_arena arena;
 };
 
