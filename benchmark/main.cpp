@@ -10,6 +10,9 @@ int main(int argc, char** argv) {
   donex::benchmark::registerTable1();
   donex::benchmark::registerFullScans();
   donex::benchmark::registerScaling();
+#ifdef DONEX_HAS_ROBIN_MAP
+  donex::benchmark::registerHashMap();
+#endif
   benchmark::RunSpecifiedBenchmarks();
   return 0;
 }

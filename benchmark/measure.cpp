@@ -51,6 +51,13 @@ Measured measure(const Scans& scans, int rounds, const std::function<void(const 
   return times.summary();
 }
 
+void report(::benchmark::State& state, const Measured& measured) {
+  state.counters["median_ms"] = measured.median;
+  state.counters["p99_ms"] = measured.p99;
+  state.counters["least_ms"] = measured.least;
+  state.counters["wall_ms"] = measured.wall;
+}
+
 Measured timeDetector(::benchmark::State& state, Detector& detector, const Scans& scans) {
   Times times;
   EchoLabels labels;
@@ -65,10 +72,7 @@ Measured timeDetector(::benchmark::State& state, Detector& detector, const Scans
     state.SetIterationTime(1e-3 * times.wall.back());
   }
   const Measured measured = times.summary();
-  state.counters["median_ms"] = measured.median;
-  state.counters["p99_ms"] = measured.p99;
-  state.counters["least_ms"] = measured.least;
-  state.counters["wall_ms"] = measured.wall;
+  report(state, measured);
   state.counters["memory_MB"] = 1e-6 * static_cast<double>(detector.memoryBytes());
   state.counters["echoes"] = static_cast<double>(scans.back().echoes.size());
   return measured;

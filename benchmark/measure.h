@@ -24,6 +24,9 @@ Measured measure(const Scans& scans, int rounds, const std::function<void(const 
 /// at their end (untimed, with the first two again). Adds counters: median, p99, wall [ms], memory [MB].
 Measured timeDetector(::benchmark::State& state, Detector& detector, const Scans& scans);
 
+/// Adds the counters median, p99, least and wall [ms].
+void report(::benchmark::State& state, const Measured& measured);
+
 /// Adds the counters `floor` [ms] and `of_floor`, and with a naive reference `naive` [ms] and `naive_over_this`.
 void compare(::benchmark::State& state, const Measured& measured, const Measured& floor, const Measured* naive);
 

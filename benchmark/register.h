@@ -6,5 +6,6 @@ namespace donex::benchmark {
 void registerTable1();
 void registerFullScans();
 void registerScaling();
+void registerHashMap();  ///< only where tsl::robin_map was found
 
 }  // namespace donex::benchmark
