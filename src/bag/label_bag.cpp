@@ -155,8 +155,8 @@ class Recording {
     if (views_[part]->size() == 0 || views_[part - 1]->size() == 0) return;
     const double gap = (views_[part]->getBeginTime() - views_[part - 1]->getEndTime()).toSec();
     if (gap >= -kOverlap && gap <= kGap) return;
-    throw DataError(fmt::format("{}: begins {:.1f} s after {} ends: they are no parts of one recording", name(part), gap,
-                                name(part - 1)));
+    throw DataError(fmt::format("{}: begins {:.1f} s after {} ends: they are no parts of one recording", name(part),
+                                gap, name(part - 1)));
   }
 
   BagParts files_;

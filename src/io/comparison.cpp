@@ -72,7 +72,8 @@ SequenceComparison compareOnSequence(const SequenceReader& sequence, std::size_t
     if (sequence.hasLabels(i) && Evaluation().scores(i)) {
       const Labels truth = sequence.labels(i);
       scoreScan(sequence, i, speeds, truth, comparison.predictions);
-      const std::pair own(2 * i >= scans, static_cast<std::size_t>(std::count_if(truth.begin(), truth.end(), isMoving)));
+      const auto moving = static_cast<std::size_t>(std::count_if(truth.begin(), truth.end(), isMoving));
+      const std::pair own(2 * i >= scans, moving);
       if (!best_scan || own > best) best = own, best_scan = i;
     }
     progress();

@@ -38,7 +38,8 @@ fs::path StaticMap::fileOf(const TileIndex& index) const {
 void StaticMap::add(const Eigen::Vector3d& point) {
   const Eigen::Array3d in_voxels = (point / voxel_size_).array().floor();
   const Index3 voxel = in_voxels.cast<int>();
-  const TileIndex tile(static_cast<int>(std::floor(point.x() / kTile)), static_cast<int>(std::floor(point.y() / kTile)));
+  const Eigen::Array2d in_tiles = (point.head<2>() / kTile).array().floor();
+  const TileIndex tile(static_cast<int>(in_tiles.x()), static_cast<int>(in_tiles.y()));
   const auto [mean, is_new] = tiles_[tile].try_emplace(keyOf(voxel));
   mean->second.sum += (point - (in_voxels * voxel_size_).matrix()).cast<float>();
   ++mean->second.count;

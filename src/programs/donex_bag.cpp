@@ -83,8 +83,11 @@ int main(int argc, char** argv) {
   CLI::App app("Copies a bag and adds its clouds with labels, the same that the live node gives.", "donex_bag");
   donex::Arguments arguments;
   donex::LabelBagOptions options;
-  app.footer("donex_bag IN.bag OUT.bag\ndonex_bag PART_0.bag PART_1.bag ... OUT_DIR   (a split recording, labelled as one)");
-  app.add_option("BAGS", arguments.files, "IN.bag OUT.bag: everything of IN and its labelled clouds; OUT is overwritten")
+  app.footer(
+      "donex_bag IN.bag OUT.bag\n"
+      "donex_bag PART_0.bag PART_1.bag ... OUT_DIR   (a split recording, labelled as one)");
+  app.add_option("BAGS", arguments.files,
+                 "IN.bag OUT.bag: everything of IN and its labelled clouds; OUT is overwritten")
       ->required()
       ->expected(2, 100000);
   app.add_option("--points", options.points, "topic of the clouds; needed where there are several");

@@ -58,7 +58,7 @@ class Mapper {
     const MapScore::Rates r = score_.rates();
     fmt::print("\nby voxel of 0.2 m (ERASOR):   PR {:.2f} %  RR {:.2f} %  F1 {:.4f}   ({} static, {} dynamic voxels)\n",
                100 * r.preservation, 100 * r.rejection, r.f1, r.static_voxels, r.dynamic_voxels);
-    fmt::print("by echo (DynamicMap_Benchmark): SA {:.2f} %  DA {:.2f} %  AA {:.2f} %   ({} static, {} moving echoes)\n",
+    fmt::print("by echo (DynamicMap_Benchmark): SA {:.2f} %  DA {:.2f} %  AA {:.2f} %   ({} static, {} moving)\n",
                100 * r.static_accuracy, 100 * r.dynamic_accuracy, 100 * r.associated, r.static_echoes,
                r.dynamic_echoes);
   }

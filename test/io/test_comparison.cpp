@@ -120,7 +120,9 @@ class Reports : public ::testing::Test {
   Comparison compare() {
     const SequenceReader sequence(directory_.path() / "drive");
     std::vector<std::pair<std::string, fs::path>> predictions;
-    for (const char* name : {"perfect", "a \"broken\", one", "blind"}) predictions.emplace_back(name, directory_.path() / name);
+    for (const char* name : {"perfect", "a \"broken\", one", "blind"}) {
+      predictions.emplace_back(name, directory_.path() / name);
+    }
     Comparison comparison;
     comparison.title = "A </script> title";
     comparison.sequences.push_back(compareOnSequence(sequence, 9, predictions, [] {}));

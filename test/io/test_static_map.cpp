@@ -51,7 +51,8 @@ TEST(StaticMap, AVoxelIsTheMeanOfItsPoints) {
 }
 
 /// A drive along x with a wall of voxels on both sides, back and forth.
-std::vector<Eigen::Vector3f> mapOfDrive(const fs::path& file, std::size_t limit, std::size_t& peak, std::size_t& tiles) {
+std::vector<Eigen::Vector3f> mapOfDrive(const fs::path& file, std::size_t limit, std::size_t& peak,
+                                        std::size_t& tiles) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> around(-20.0, 20.0);
   StaticMap map(file, 0.5, limit);

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""donex_archive on a small folder: a corrupt bag, a split recording, a run that is killed, and results as of single runs.
+"""donex_archive on a small folder: corrupt bags, a split recording, a run that is killed; results as of single runs.
 
 Usage: test_archive.py DONEX_ARCHIVE DIRECTORY_OF_PROGRAMS
 """
@@ -17,7 +17,8 @@ import rosbag
 
 
 def run(*command, code=0):
-    result = subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    result = subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                            text=True)
     if result.returncode != code:
         sys.exit(f"{' '.join(map(str, command))} ended with {result.returncode}, not {code}:\n{result.stdout}")
     return result.stdout

@@ -16,13 +16,14 @@ TEST(BagMemory, ABagLargerThanMemoryPasses) {
   constexpr int kMessages = 150, kBytes = 4 << 20, kLimit = 450;  // 630 MB in all; the limit is of address space [MB]
   test::change(in, [](rosbag::Bag& bag) {
     for (int i = 0; i < kMessages; ++i) {
-      bag.write("/camera", ros::Time(50.0 + 0.02 * i), test::text(std::string(kBytes, static_cast<char>('a' + i % 26))));
+      const std::string image(kBytes, static_cast<char>('a' + i % 26));
+      bag.write("/camera", ros::Time(50.0 + 0.02 * i), test::text(image));
     }
   });
   ASSERT_GT(fs::file_size(in), std::uintmax_t{kLimit} * 1300000U);
-  const std::string command = "ulimit -v " + std::to_string(kLimit * 1000) + "; " + DONEX_BAG;
-  const test::Outcome outcome =
-      test::runCommand("bash -c '" + command + " " + in.string() + " " + out.string() + " --set x_min=-20 --set x_max=20'");
+  const std::string limited = "ulimit -v " + std::to_string(kLimit * 1000) + "; " + DONEX_BAG;
+  const std::string arguments = " " + in.string() + " " + out.string() + " --set x_min=-20 --set x_max=20";
+  const test::Outcome outcome = test::runCommand("bash -c '" + limited + arguments + "'");
   EXPECT_EQ(outcome.code, 0) << outcome.text;
   EXPECT_NE(outcome.text.find("30 of 30 clouds labelled"), std::string::npos) << outcome.text;
   EXPECT_GT(fs::file_size(out), fs::file_size(in));

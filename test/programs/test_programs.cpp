@@ -119,7 +119,9 @@ TEST_F(Programs, EvaluateRefusesWhatItCannotScore) {
 TEST_F(Programs, EvaluateWritesReports) {
   run(DONEX_SEQUENCE, "seq --out pred");
   expect(0, "prediction", DONEX_EVALUATE, "seq pred --csv out.csv --json out.json --html out.html");
-  for (const char* file : {"out.csv", "out.json", "out.html", "pred/run.json"}) EXPECT_TRUE(fs::exists(path(file))) << file;
+  for (const char* file : {"out.csv", "out.json", "out.html", "pred/run.json"}) {
+    EXPECT_TRUE(fs::exists(path(file))) << file;
+  }
   expect(1, "none/out.csv: cannot be written", DONEX_EVALUATE, "seq pred --csv none/out.csv");
 }
 

@@ -48,7 +48,8 @@ def write_prediction(drive, directory, random, error):
 
 
 def run(*command):
-    result = subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    result = subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                            text=True)
     if result.returncode != 0:
         sys.exit(f"{command[0]} ended with {result.returncode}:\n{result.stdout}")
     return result.stdout
