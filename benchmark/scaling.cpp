@@ -48,11 +48,13 @@ void registerScaling() {
       add("echoes", std::to_string(echoes), setting);
     }
     setting.echoes = Setting().echoes;
+    setting.reach = 30.0;  // where voxels of 0.05 m fit the default memory limit
     for (const char* size : {"0.5", "0.4", "0.2", "0.1", "0.05"}) {
       setting.voxel_size = std::stod(size);
       add("voxel_size", size, setting);
     }
     setting.voxel_size = Setting().voxel_size;
+    setting.reach = Setting().reach;
     for (const char* reach : {"25", "50", "75", "100"}) {
       setting.reach = std::stod(reach);
       add("reach", reach, setting);
