@@ -84,7 +84,8 @@ sensor_msgs::PointCloud2Ptr explainScan(const LabeledScan& scan) {
     const EchoReason by_label = scan.labels.dynamic[i] != 0 ? EchoReason::kMoving : EchoReason::kSettled;
     const EchoReason reason = tells ? reasons[i] : by_label;
     const Eigen::Vector3f& p = positions[i];
-    const Row row{p.x(), p.y(), p.z(), colourOf(reason, (base_from_sensor * p).z()), static_cast<std::uint8_t>(reason), {}};
+    const Row row{p.x(), p.y(), p.z(), colourOf(reason, (base_from_sensor * p).z()), static_cast<std::uint8_t>(reason),
+                  {}};
     std::memcpy(cloud->data.data() + i * sizeof(Row), &row, sizeof(Row));
   }
   return cloud;

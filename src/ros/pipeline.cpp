@@ -49,7 +49,8 @@ void Pipeline::readTimes(WaitingCloud& waiting) {
   waiting.times = parseEchoTimes(*waiting.cloud, waiting.layout, problem);
   const std::string& wanted = config_.cloud.time_field;
   const bool is_missing = !wanted.empty() && !waiting.layout.time;
-  if (is_missing) problem = "the cloud has no field '" + wanted + "' with times (FLOAT32, FLOAT64 or UINT32): not de-skewed";
+  if (is_missing)
+    problem = "the cloud has no field '" + wanted + "' with times (FLOAT32, FLOAT64 or UINT32): not de-skewed";
   if (!problem.empty()) events_.strange_times(problem);
 }
 

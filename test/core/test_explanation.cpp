@@ -70,7 +70,8 @@ TEST(Explanation, reasonsAgreeWithTheLabels) {
       ASSERT_EQ(reasons.size(), scan.scan.echoes.size());
       if (&scan == &drive.front()) continue;
       for (std::size_t i = 0; i < reasons.size(); ++i) {
-        expectAgreement(reasons[i], labels.dynamic[i] != 0, labels.observed[i] != 0, "echo " + std::to_string(i) + ": ");
+        expectAgreement(reasons[i], labels.dynamic[i] != 0, labels.observed[i] != 0,
+                        "echo " + std::to_string(i) + ": ");
         seen.insert(reasons[i]);
       }
     }

@@ -36,8 +36,8 @@ class Bytes {
 };
 
 sensor_msgs::PointCloud2Ptr cloudOf(Bytes bytes) {
-  constexpr std::array<const char*, 10> kNames{"x", "y", "z", "time", "t", "offset_time", "timestamp", "dynamic",
-                                               "observed", "intensity"};
+  constexpr std::array<const char*, 10> kNames{"x",           "y",         "z",       "time",     "t",
+                                               "offset_time", "timestamp", "dynamic", "observed", "intensity"};
   auto cloud = boost::make_shared<PointCloud2>();
   cloud->header.frame_id = "lidar";
   cloud->header.stamp.sec = 100;

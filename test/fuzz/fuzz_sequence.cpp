@@ -10,8 +10,9 @@ namespace {
 namespace fs = std::filesystem;
 
 void writeSequence(const fs::path& directory, const std::string& bytes) {
-  const std::array<const char*, 7> files{"poses.txt", "times.txt", "calib.txt", "velodyne/000000.bin",
-                                         "velodyne/000001.bin", "labels/000000.label", "labels/000001.label"};
+  const std::array<const char*, 7> files{"poses.txt",           "times.txt",           "calib.txt",
+                                         "velodyne/000000.bin", "velodyne/000001.bin", "labels/000000.label",
+                                         "labels/000001.label"};
   const std::string divider = "====\n";
   fs::remove_all(directory);
   fs::create_directories(directory / "velodyne");
@@ -22,7 +23,8 @@ void writeSequence(const fs::path& directory, const std::string& bytes) {
     const std::size_t end = std::min(bytes.find(divider, begin), bytes.size());
     // An empty part is a file that is not there.
     if (end != begin) {
-      donex::fuzz::writeFile(directory / file, reinterpret_cast<const std::uint8_t*>(bytes.data()) + begin, end - begin);
+      donex::fuzz::writeFile(directory / file, reinterpret_cast<const std::uint8_t*>(bytes.data()) + begin,
+                             end - begin);
     }
     begin = end + divider.size();
   }

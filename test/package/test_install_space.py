@@ -35,7 +35,8 @@ class InstallSpace(unittest.TestCase):
     def test_launch_files_load(self):
         launch = INSTALL_SPACE / "share" / "donex" / "launch"
         for name, arguments in [("donex.launch", []), ("donex.launch", ["nodelet:=false", "rviz:=true"]),
-                                ("donex.launch", ["manager:=somebody"]), ("donex.launch", ["sensor:=vlp16"]), ("demo.launch", []),
+                                ("donex.launch", ["manager:=somebody"]), ("donex.launch", ["sensor:=vlp16"]),
+                                ("map.launch", []), ("demo.launch", []),
                                 ("replay.launch", ["bag:=/drive.bag", "loop:=true", "mounting:=0 0 1 0 0 0 a b"])]:
             subprocess.run(["roslaunch", "--nodes", str(launch / name)] + arguments, check=True, timeout=60,
                            stdout=subprocess.DEVNULL)

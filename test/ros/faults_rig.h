@@ -20,9 +20,9 @@ class FaultsTest : public ManagerTest {
     setClock(kBegin);
   }
 
-  static constexpr double kBegin = 100.0;   // [s]
-  static constexpr double kPeriod = 0.1;    // of the scans [s]
-  static constexpr std::size_t kGood = 5;   // scans before the fault
+  static constexpr double kBegin = 100.0;      // [s]
+  static constexpr double kPeriod = 0.1;       // of the scans [s]
+  static constexpr std::size_t kGood = 5;      // scans before the fault
   static constexpr std::size_t kPatience = 2;  // scans until it is as before
 
   /// Returns when this process's clock, and so the classifier's, shows it.
@@ -66,9 +66,8 @@ class FaultsTest : public ManagerTest {
     ADD_FAILURE() << "nothing is labelled two scans after the fault: " << status_;
   }
   bool hasLabeled(double stamp) const {
-    return std::any_of(received_.begin(), received_.end(), [&](const auto& cloud) {
-      return std::abs(cloud->header.stamp.toSec() - stamp) < 1e-6;
-    });
+    return std::any_of(received_.begin(), received_.end(),
+                       [&](const auto& cloud) { return std::abs(cloud->header.stamp.toSec() - stamp) < 1e-6; });
   }
 
   /// Waits until every cloud is accounted for, then writes the row: which drops and refusals are counted.

@@ -142,7 +142,8 @@ TEST(CloudLayout, timesByNameAndDatatype) {
 
 TEST(CloudLayout, timesOfAConfiguredField) {
   const auto timeOf = [](std::uint8_t datatype, const CloudConfig& config) {
-    const auto cloud = CloudBuilder().xyz().field("stamp_of_echo", datatype).field("t", PointField::UINT32).size(2).build();
+    const auto cloud =
+        CloudBuilder().xyz().field("stamp_of_echo", datatype).field("t", PointField::UINT32).size(2).build();
     return std::get<CloudLayout>(judgeLayout(*cloud, config)).time;
   };
   CloudConfig config;

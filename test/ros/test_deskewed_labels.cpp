@@ -19,10 +19,10 @@ using simulation::Path;
 using simulation::Scene;
 using simulation::SimulatedScan;
 
-constexpr double kSpeed = 15.0;                         // [m/s]
-constexpr double kTurnRate = 30.0 * M_PI / 180.0;       // [rad/s]
-constexpr double kRadius = kSpeed / kTurnRate;          // of the ego vehicle's circle [m]
-constexpr double kPeriod = 0.1;                         // of a turn of the sensor [s]
+constexpr double kSpeed = 15.0;                    // [m/s]
+constexpr double kTurnRate = 30.0 * M_PI / 180.0;  // [rad/s]
+constexpr double kRadius = kSpeed / kTurnRate;     // of the ego vehicle's circle [m]
+constexpr double kPeriod = 0.1;                    // of a turn of the sensor [s]
 constexpr int kBeams = 32;
 constexpr int kScans = 60;
 constexpr int kWarmUp = 5;
@@ -128,8 +128,8 @@ struct Drive {
     const auto out = labelCloud(*scan.cloud, scan.layout, scan.labels);
     ASSERT_EQ(out->width, cloud_->width);
     for (std::size_t i = 0; i < out->width; ++i) {
-      const bool same = std::memcmp(&out->data[i * out->point_step], &cloud_->data[i * cloud_->point_step],
-                                    cloud_->point_step) == 0;
+      const bool same =
+          std::memcmp(&out->data[i * out->point_step], &cloud_->data[i * cloud_->point_step], cloud_->point_step) == 0;
       ASSERT_TRUE(same) << "echo " << i;
     }
   }

@@ -69,8 +69,10 @@ TEST_F(Faults, odometryIsNotANumber) {
   for (int scan = 0; scan < 10; ++scan) {
     advance();
     auto bad = boost::make_shared<nav_msgs::Odometry>(test::odometryAt(now_));
-    if (scan % 2 == 0) bad->pose.pose.position.x = std::nan("");
-    else bad->pose.pose.orientation.w = 0.2;
+    if (scan % 2 == 0)
+      bad->pose.pose.position.x = std::nan("");
+    else
+      bad->pose.pose.orientation.w = 0.2;
     odometry_.publish(bad);
     sendCloud(now_);
   }
@@ -117,7 +119,8 @@ TEST_F(Faults, cloudsFasterThanTheyCanBeProcessed) {
   ASSERT_TRUE(waitFor([&] { return hasLabeled(first + kBurst * 1e-3); })) << "the newest wins: " << status_;
   EXPECT_LT(received_.size() - before, static_cast<std::size_t>(kBurst));
   recover();
-  EXPECT_TRUE(waitFor([this] { return !diagnostic("dropped: queue full").empty() && count("dropped: queue full") > 0; }));
+  EXPECT_TRUE(
+      waitFor([this] { return !diagnostic("dropped: queue full").empty() && count("dropped: queue full") > 0; }));
   conclude("80 clouds at once: the newest are labelled");
 }
 

@@ -1,5 +1,6 @@
 // What people do to it while it runs: reset and reconfigure storms, kill, interrupt, restart.
 #include <csignal>
+
 #include <sys/types.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -129,7 +130,8 @@ TEST_F(OtherProcess, interruptedInTheMiddleOfAScan) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
   waitUntilGone();
   if (!HasFailure()) {
-    test::FaultTable::instance().add("SIGINT in the middle of a scan", "nothing dropped", "ends at once with exit code 0");
+    test::FaultTable::instance().add("SIGINT in the middle of a scan", "nothing dropped",
+                                     "ends at once with exit code 0");
   }
 }
 
@@ -139,14 +141,16 @@ TEST_F(OtherProcess, interruptedInTheMiddleOfAScan) {
 class TableIsTheReadmes : public testing::Environment {
  public:
   void TearDown() override {
-    const bool ran_all = testing::UnitTest::GetInstance()->test_to_run_count() == testing::UnitTest::GetInstance()->total_test_count();
+    const bool ran_all =
+        testing::UnitTest::GetInstance()->test_to_run_count() == testing::UnitTest::GetInstance()->total_test_count();
     if (!ran_all || testing::UnitTest::GetInstance()->failed_test_count() != 0) return;
     const std::string table = test::FaultTable::instance().text();
     test::FaultTable::instance().write(DONEX_FAULT_TABLE);
     std::ifstream file(DONEX_README);
     const std::string readme((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
     EXPECT_NE(readme.find(table), std::string::npos)
-        << "the README shows another table: scripts/fault_table " << DONEX_FAULT_TABLE << "\n" << table;
+        << "the README shows another table: scripts/fault_table " << DONEX_FAULT_TABLE << "\n"
+        << table;
   }
 };
 

@@ -10,7 +10,7 @@ namespace donex {
 namespace {
 
 constexpr int kScans = 22;
-constexpr int kWarmUp = 10;  // scans
+constexpr int kWarmUp = 10;                            // scans
 constexpr OctomapBuilder::Options kCoarse{0.3, 20.0};  // [m]
 constexpr std::uint32_t kFirstMoving = 252, kClass = 0xFFFF;
 

@@ -28,12 +28,15 @@ const std::filesystem::path kSensors = std::filesystem::path(DONEX_CONFIG_DIR) /
 
 /// Which driver a sensor is used with.
 const std::multimap<std::string, std::string> kDriverOf{
-    {"vlp16", "velodyne"},         {"vlp16", "velodyne organised"}, {"hdl32e", "velodyne"},
-    {"hdl64e", "velodyne"},        {"vls128", "velodyne"},          {"os0", "ouster"},
-    {"os1", "ouster"},             {"os1", "ouster ring 8"},        {"os2", "ouster"},
-    {"pandar", "hesai general"},   {"xt32", "hesai 2.0"},           {"rs16", "robosense"},
-    {"rs32", "robosense"},         {"ruby", "robosense"},           {"bpearl", "robosense"},
-    {"mid360", "livox"},           {"hap", "livox"},
+    {"vlp16", "velodyne"},   {"vlp16", "velodyne organised"},
+    {"hdl32e", "velodyne"},  {"hdl64e", "velodyne"},
+    {"vls128", "velodyne"},  {"os0", "ouster"},
+    {"os1", "ouster"},       {"os1", "ouster ring 8"},
+    {"os2", "ouster"},       {"pandar", "hesai general"},
+    {"xt32", "hesai 2.0"},   {"rs16", "robosense"},
+    {"rs32", "robosense"},   {"ruby", "robosense"},
+    {"bpearl", "robosense"}, {"mid360", "livox"},
+    {"hap", "livox"},
 };
 
 const DriverCloud& driverNamed(const std::string& name) {
@@ -64,8 +67,10 @@ boost::shared_ptr<PointCloud2> distortedScan(const DriverCloud& driver) {
     const double fired = kStart + firedAfter(i), after = fired - stamp;
     const Eigen::Vector3d seen = target(i) - Eigen::Vector3d(kSpeed * after, 0.0, 0.0);
     const bool nothing = i % kNothing == 0;
-    if (nothing) builder.at(i, driver.no_return, driver.no_return, driver.no_return);
-    else builder.at(i, seen.x(), seen.y(), seen.z());
+    if (nothing)
+      builder.at(i, driver.no_return, driver.no_return, driver.no_return);
+    else
+      builder.at(i, seen.x(), seen.y(), seen.z());
     builder.set(i, driver.time_field, driver.units_per_second * (driver.absolute ? fired : after));
   }
   return builder.build();
@@ -127,7 +132,8 @@ TEST(Sensors, theDriversBytesAndFieldsAreKept) {
     EXPECT_TRUE(std::equal(cloud->fields.begin(), cloud->fields.end(), out->fields.begin()));
     EXPECT_EQ(out->height, driver.rows);
     for (std::size_t i = 0; i < kEchoes; ++i) {
-      ASSERT_EQ(std::memcmp(&cloud->data[i * cloud->point_step], &out->data[i * out->point_step], cloud->point_step), 0);
+      ASSERT_EQ(std::memcmp(&cloud->data[i * cloud->point_step], &out->data[i * out->point_step], cloud->point_step),
+                0);
     }
   }
 }

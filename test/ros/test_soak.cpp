@@ -19,8 +19,8 @@ namespace {
 
 using test::PipelineRig;
 
-constexpr double kPeriod = 0.1;            // [s]
-constexpr std::size_t kStride = 12;        // every so many-th echo
+constexpr double kPeriod = 0.1;                 // [s]
+constexpr std::size_t kStride = 12;             // every so many-th echo
 constexpr std::size_t kLeastForMemory = 10000;  // scans; before, memory is still being warmed up
 
 std::size_t scansWanted() {
@@ -86,7 +86,9 @@ class Soak {
   std::size_t sent() const { return sent_; }
   /// Median of a part of the samples of resident memory [MB].
   double memory(double from, double to) const {
-    const auto at = [&](double share) { return memory_.begin() + static_cast<long>(share * static_cast<double>(memory_.size())); };
+    const auto at = [&](double share) {
+      return memory_.begin() + static_cast<long>(share * static_cast<double>(memory_.size()));
+    };
     std::vector<double> part(at(from), at(to));
     std::nth_element(part.begin(), part.begin() + static_cast<long>(part.size() / 2), part.end());
     return part.at(part.size() / 2);
