@@ -210,7 +210,10 @@ void addSetting(const std::string& text, Settings& settings, Faults& faults) {
   if (!has_name) return faults.add(fmt::format("'{}': must be name=value", text));
   const std::string where = fmt::format("'{}'", text);
   try {
-    settings[text.substr(0, equals)] = {YAML::Load(text.substr(equals + 1)), where, false};
+    const YAML::Node value = YAML::Load(text.substr(equals + 1));
+    const std::string name = text.substr(0, equals);
+    settings.erase(name);
+    settings.insert({name, {value, where, false}});
   } catch (const YAML::Exception& error) {
     faults.add(fmt::format("{}: is not YAML: {}", where, error.msg));
   }

@@ -49,7 +49,7 @@ sensor_msgs::PointCloud2Ptr OctomapBuilder::occupiedCells(const std_msgs::Header
   std::vector<Eigen::Vector3f> centers;
   for (auto leaf = tree_->octree.begin_leafs(); leaf != tree_->octree.end_leafs(); ++leaf) {
     if (!tree_->octree.isNodeOccupied(*leaf)) continue;
-    centers.push_back(Eigen::Vector3d(leaf.getX(), leaf.getY(), leaf.getZ()).cast<float>());
+    centers.emplace_back(Eigen::Vector3d(leaf.getX(), leaf.getY(), leaf.getZ()).cast<float>());
   }
   return cellCloud(centers, header);
 }
