@@ -1,5 +1,6 @@
 #include "donex/ros/donex_node.h"
 
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -9,6 +10,7 @@
 #include <tf2_ros/buffer.h>
 #include <tf2_ros/transform_listener.h>
 
+#include "donex/core/memory_bound.h"
 #include "donex/ros/diagnostics.h"
 #include "donex/ros/explanation_clouds.h"
 #include "donex/ros/markers.h"
@@ -93,6 +95,10 @@ DonexNode::Implementation::Implementation(const ros::NodeHandle& nh, const ros::
       config_(readParameters(pnh)),
       pipeline_(config_, tf_, events()),
       diagnostics_(nh, pnh, pipeline_, usesOdometry(config_.motion.source)) {
+  constexpr std::size_t kUsualScan = 120000;  // echoes
+  ROS_INFO_STREAM_NAMED("donex", "memory asked for beforehand, for scans of " << kUsualScan << " echoes: "
+                                     << std::lround(memoryBound(config_, kUsualScan) / 1e6) << " MB (memory_limit " << config_.memory_limit
+                                     << " MB); with evidence, records of the voxels hit come on top");
   // A sensor at rest asks tf nothing.
   const bool needs_tf = config_.motion.source != OdometrySource::kNone;
   if (needs_tf) tf_listener_ = std::make_unique<tf2_ros::TransformListener>(tf_, nh_);
