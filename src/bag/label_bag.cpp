@@ -11,6 +11,8 @@
 
 #include "donex/bag/bag_file.h"
 #include "donex/core/whole_drive.h"
+#include "donex/io/drive_run.h"
+#include "ground_truth.h"
 #include "topics.h"
 
 namespace donex {
@@ -79,6 +81,10 @@ void Labeler::remark(const std::string& kind, const std::string& text) {
 void Labeler::take(const LabeledScan& scan) {
   summary_.times.push_back(scan.processing_time);
   summary_.echoes += scan.labels.dynamic.size();
+  const auto truth = truthOf(*scan.cloud, scan.layout);
+  if (!truth.empty()) {
+    summary_.evaluation.add(summary_.times.size() - 1, scan.scan.echoes, truth, asSemanticKitti(scan.labels));
+  }
   sink_(scan, now_, part_);
 }
 

@@ -1,4 +1,5 @@
 // A bag with labelled clouds from a bag with clouds, as fast as the machine can.
+#include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
@@ -46,19 +47,27 @@ void report(const LabelBagSummary& summary) {
   fmt::print("time a scan: median {:.2f} ms, p99 {:.2f} ms\n", 1e3 * quantile(summary.times, 0.5),
              1e3 * quantile(summary.times, 0.99));
   fmt::print("peak memory: {}\n", megabytes(peakMemory()));
+  if (summary.evaluation.scans() == 0) return;
+  fmt::print("\nscored by the clouds' field label:\n{}", formatEvaluations({{"this run", &summary.evaluation}}));
 }
+
+/// A ratio of nothing is null.
+std::string jsonNumber(double value) { return std::isfinite(value) ? fmt::format("{:.6f}", value) : "null"; }
 
 /// What a workflow gathers from many runs.
 void keepSummary(const fs::path& file, const LabelBagSummary& summary, const Config& config) {
   double seconds = 0.0;
   for (const double time : summary.times) seconds += time;
   const PipelineCounts& counts = summary.counts;
+  const Counts& score = summary.evaluation.total();
   writeReport(file, fmt::format("{{\"method\": \"{}\", \"duration\": {:.3f}, \"messages\": {}, \"clouds\": {}, "
                                 "\"labeled\": {}, \"dropped\": {}, \"echoes\": {}, \"labelling_time\": {:.3f}, "
-                                "\"median_time\": {:.6f}, \"p99_time\": {:.6f}, \"peak_memory\": {}}}\n",
+                                "\"median_time\": {:.6f}, \"p99_time\": {:.6f}, \"peak_memory\": {}, "
+                                "\"iou\": {}, \"precision\": {}, \"recall\": {}}}\n",
                                 nameOf(config.method), summary.duration, summary.messages, counts.clouds_in,
                                 counts.clouds_labeled, counts.dropped.total(), summary.echoes, seconds,
-                                quantile(summary.times, 0.5), quantile(summary.times, 0.99), peakMemory()));
+                                quantile(summary.times, 0.5), quantile(summary.times, 0.99), peakMemory(),
+                                jsonNumber(score.iou()), jsonNumber(score.precision()), jsonNumber(score.recall())));
 }
 
 void run(const CLI::App& app, const Arguments& arguments, const LabelBagOptions& options) {

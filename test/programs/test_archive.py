@@ -93,6 +93,7 @@ def main():
         rows = {row["recording"]: row for row in csv.DictReader(open(out / "summary.csv"))}
         expect(set(rows) == {"one", "two", "day/long", "bad", "broken", recording}, "the summary has all recordings")
         expect(rows["bad"]["state"] == "missing" and rows["one"]["labeled"] == "10", "the summary tells what was done")
+        expect(0.0 < float(rows["day/long"]["recall"]) <= 1.0, "simulated bags are scored by their own truth")
         before = (out / "one.bag").stat().st_mtime_ns
         (folder / "bad.bag").unlink()
         (folder / "broken.bag").unlink()

@@ -9,6 +9,7 @@
 
 #include "donex/core/config.h"
 #include "donex/io/data_error.h"
+#include "donex/io/evaluation.h"
 #include "donex/ros/pipeline.h"
 
 namespace donex {
@@ -27,6 +28,7 @@ struct LabelBagSummary {
   PipelineCounts counts;
   double duration = 0.0;     ///< from the first to the last message of the input [s]
   std::vector<double> times;         ///< parsing and judging, a labelled cloud [s]
+  Evaluation evaluation;             ///< where the clouds carry their truth, as simulated ones do
   std::vector<std::string> remarks;  ///< why something was dropped, refused or forgotten: each kind's first
 };
 
