@@ -12,7 +12,7 @@
 namespace donex {
 namespace {
 
-constexpr float kSkirt = 0.1F;             // [m] from here up to the ground clearance echoes may belong to an object
+constexpr float kSkirt = 0.07F;            // [m] from here up to the ground clearance echoes may belong to an object
 constexpr std::size_t kExpectedAhead = 12;  // echoes; long enough for memory to answer
 constexpr double kHistorySpacing = 0.09;   // [s] a 10 Hz sensor's every scan, a 20 Hz sensor's every second
 
@@ -150,7 +150,7 @@ class EvidenceDetector : public Detector {
   }
 
   void labelObjects(EchoLabels& labels) {
-    finder_.find(judged_, candidates_);
+    finder_.find(judged_, tracker_.expected(judged_.stamp), candidates_);
     tracker_.update(judged_, history_, candidates_);
     finder_.release(judged_, candidates_);
     for (const Candidate& candidate : candidates_) {

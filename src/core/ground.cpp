@@ -1,8 +1,11 @@
 #include "donex/core/ground.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+
+#include <Eigen/Cholesky>
 
 #include "simd.h"
 
@@ -11,12 +14,17 @@ namespace {
 
 constexpr float kCell = 0.8F;            // [m]
 constexpr int kReach = 2;                // cells over which the ground is continued
-constexpr float kRoughness = 0.15F;      // [m] ground may rise or fall this much from cell to cell anyway: kerbs
+constexpr float kRoughness = 0.15F;      // [m] ground may fall this much from cell to cell anyway: kerbs
 constexpr float kSlope = 0.08F;          // and this much a metre since it was last seen
+// It may rise less: where a vehicle hides the ground, its sill is the lowest echo.
+constexpr float kKerb = 0.14F;           // [m]
+constexpr float kRise = 0.03F;
 constexpr float kLargestStep = 0.4F;     // [m] never more
 constexpr float kStartUncertainty = 4.0F;  // [m] as if the ground had been seen last this far away
 constexpr float kStartRadius = 7.0F;     // [m] the cells in it tell where the ground starts,
 constexpr std::size_t kStartCells = 24;  // but never fewer than these
+constexpr std::array<float, 3> kStartReach = {0.6F, 0.3F, 0.15F};  // [m] off the plane so far
+constexpr double kLevelling = 50.0;  // [m^2] as if so much spoke for level ground
 constexpr float kNone = std::numeric_limits<float>::infinity();
 
 /// The number of every echo's cell, or -1 outside the map.
@@ -56,6 +64,10 @@ Ground::Ground(double reach) : width_(2 * static_cast<int>(std::ceil(reach / sta
   }
 }
 
+Eigen::Vector2f Ground::offsetOf(const Cell& cell) {
+  return kCell * Eigen::Vector2f(cell.x, cell.y);
+}
+
 void Ground::estimate(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
                       const std::vector<std::uint8_t>& is_echo) {
   sensor_ = sensor;
@@ -68,35 +80,53 @@ void Ground::estimate(const Eigen::Vector3f& sensor, const std::vector<Eigen::Ve
     float& lowest = lowest_[static_cast<std::size_t>(cell_of_[i])];
     lowest = std::min(lowest, echoes[i].z());
   }
-  const float start = startingHeight();
-  if (start == kNone) return;
+  if (!findStart()) return;
   for (const Cell& cell : outwards_) {
     const std::size_t i = indexOf(cell.x, cell.y);
-    const Continuation expected = continueTo(cell, start);
-    const float step = std::min(kRoughness + kSlope * expected.unseen, kLargestStep);
-    const bool continues = std::abs(lowest_[i] - expected.height) < step;
+    const Continuation expected = continueTo(cell);
+    const float down = std::min(kRoughness + kSlope * expected.unseen, kLargestStep);
+    const float rise = std::min(kKerb + kRise * expected.unseen, kLargestStep);
+    const float step = lowest_[i] - expected.height;
+    const bool continues = step > -down && step < rise;
     ground_[i] = continues ? lowest_[i] : expected.height;
     unseen_[i] = continues ? 0.0F : expected.unseen;
   }
 }
 
-float Ground::startingHeight() {
+bool Ground::findStart() {
   near_.clear();
   constexpr auto kRadius = static_cast<int>(kStartRadius / kCell);
   for (const Cell& cell : outwards_) {
     const bool enough = near_.size() >= kStartCells && cell.squaredDistance() > kRadius * kRadius;
     if (enough) break;
     const float lowest = lowest_[indexOf(cell.x, cell.y)];
-    if (lowest != kNone) near_.push_back(lowest);
+    const Eigen::Vector2f offset = offsetOf(cell);
+    if (lowest != kNone) near_.emplace_back(offset.x(), offset.y(), lowest);
   }
-  if (near_.empty()) return kNone;
+  if (near_.empty()) return false;
   // A third from below: passes by stray echoes beneath the ground, and by parked cars on both sides.
   const auto third = near_.begin() + static_cast<std::ptrdiff_t>(near_.size() / 3);
-  std::nth_element(near_.begin(), third, near_.end());
-  return *third;
+  std::nth_element(near_.begin(), third, near_.end(), [](const auto& a, const auto& b) { return a.z() < b.z(); });
+  start_ = Eigen::Vector3f(0.0F, 0.0F, third->z());
+  // On a slope that is a height among many: a plane through what lies near it, then nearer, follows.
+  for (const float reach : kStartReach) start_ = fitStart(reach);
+  return true;
 }
 
-Ground::Continuation Ground::continueTo(const Cell& cell, float start) const {
+Eigen::Vector3f Ground::fitStart(float reach) const {
+  // Least squares, drawn to level ground and to the height so far where little speaks for a plane.
+  Eigen::Matrix3d normal = Eigen::Vector3d(kLevelling, kLevelling, 1e-6).asDiagonal();
+  Eigen::Vector3d right = 1e-6 * start_.cast<double>();
+  for (const Eigen::Vector3f& cell : near_) {
+    if (std::abs(cell.z() - startAt(cell.head<2>())) > reach) continue;
+    const Eigen::Vector3d row(cell.x(), cell.y(), 1.0);
+    normal += row * row.transpose();
+    right += row * cell.z();
+  }
+  return normal.ldlt().solve(right).cast<float>();
+}
+
+Ground::Continuation Ground::continueTo(const Cell& cell) const {
   const int half = width_ / 2;
   const bool at_edge = std::max(std::abs(cell.x), std::abs(cell.y)) > half - kReach;
   float sum = 0.0F, weights = 0.0F, unseen = kNone;
@@ -107,12 +137,14 @@ Ground::Continuation Ground::continueTo(const Cell& cell, float start) const {
     const std::size_t neighbour = indexOf(cell.x + by.x, cell.y + by.y);
     const float since_seen = unseen_[neighbour] + by.away;
     const float weight = 1.0F / (since_seen * since_seen);
-    sum += weight * ground_[neighbour];
+    // The slope around the sensor goes on.
+    const float climb = kCell * (start_.x() * static_cast<float>(by.x) + start_.y() * static_cast<float>(by.y));
+    sum += weight * (ground_[neighbour] - climb);
     weights += weight;
     unseen = std::min(unseen, since_seen);
   }
   if (weights > 0.0F) return {sum / weights, unseen};
-  return {start, kStartUncertainty};
+  return {startAt(offsetOf(cell)), kStartUncertainty};
 }
 
 float Ground::heightOf(const Eigen::Vector3f& point) const {
@@ -134,7 +166,8 @@ float Ground::heightIn(int cell, float z) const {
 
 std::size_t Ground::memoryBytes() const {
   return outwards_.capacity() * sizeof(Cell) + around_.capacity() * sizeof(Neighbour) + cell_of_.capacity() * sizeof(int) +
-         (lowest_.capacity() + ground_.capacity() + unseen_.capacity() + near_.capacity()) * sizeof(float);
+         (lowest_.capacity() + ground_.capacity() + unseen_.capacity()) * sizeof(float) +
+         near_.capacity() * sizeof(Eigen::Vector3f);
 }
 
 }  // namespace donex

@@ -65,8 +65,8 @@ Place Newness3d::judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& 
     }
     record.last_hit = clock.scan();
   }
-  if (!clock.isYoung(record.birth, record.was_free) || record.at_surface) return Place::kSettled;
-  return record.was_free ? Place::kNew : Place::kUnobserved;
+  if (!clock.isYoung(record.birth, record.was_free)) return Place::kSettled;
+  return record.was_free && !record.at_surface ? Place::kNew : Place::kUnobserved;
 }
 
 bool Newness3d::touchesSettled(const Index3& voxel, const ScanClock& clock) const {

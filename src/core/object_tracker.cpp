@@ -1,6 +1,7 @@
 #include "donex/core/object_tracker.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "donex/core/oriented_box.h"
@@ -12,36 +13,53 @@ constexpr double kLargestStep = 4.0;       // [m] between two scans, before a ve
 constexpr double kFollowedStep = 1.5;      // [m] off the predicted place
 constexpr double kLost = 0.6;              // [s] unseen for longer: forgotten
 // An object's former place is asked for after these times [s]: soon for the fast, later again for the slow.
-constexpr std::array<double, 2> kLookBack = {0.3, 1.0};
-constexpr std::size_t kTracePoints = 48;
+constexpr std::array<double, 3> kLookBack = {0.3, 0.6, 1.0};
 constexpr double kSmoothing = 0.3;         // share of the newest displacement in the velocity
 constexpr int kScansToBelieve = 2;
 constexpr int kLeastLeft = 3;              // points of a trace
-
-bool alike(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return ((a - b).array().abs() <= (0.5 * a.cwiseMax(b)).array() + 0.7).all();
-}
+constexpr double kMovesOn = 1.0;           // [s] after it was seen to move as one, a thing does so still
+constexpr double kReleaseAfter = 0.3;      // [s] but its parts are released sooner
+constexpr double kForgetExtent = 0.9;      // of the former extent remains, a scan
+constexpr double kRim = 0.5;               // [m] around a moving thing
+constexpr double kSettledFragment = 0.2;   // share
 
 }  // namespace
 
 void ObjectTracker::update(const JudgedScan& scan, const SightHistory& history, std::vector<Candidate>& candidates) {
   objects_.clear();
+  sensor_ = scan.odom_from_points * scan.sensor.cast<double>();
+  const std::vector<Expected> wholes = expected(scan.stamp, &Track::full_extent);
   match(scan.stamp, candidates);
-  const Eigen::Isometry3d points_from_odom = scan.odom_from_points.inverse();
+  const MotionEvidence evidence(scan, history);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     Candidate& candidate = candidates[i];
     if (isTooLong(candidate)) continue;
     Track& track = trackOf(i, scan.stamp, candidate);
-    std::array<Former, 2> former;
-    for (std::size_t k = 0; k < former.size(); ++k) {
-      former[k] = lookBack(track, scan.stamp - kLookBack[k], points_from_odom, history);
-    }
-    decide(track, scan.stamp, candidate, former);
+    weigh(track, evidence, scan.stamp, candidate);
+    decide(track, scan.stamp, candidate);
     leaveTrace(track, scan, candidate);
     if (track.ever_dynamic) describe(track, scan, candidate);
   }
+  complete(wholes, candidates);
   const auto is_lost = [&](const Track& track) { return track.last_seen < scan.stamp - kLost; };
   tracks_.erase(std::remove_if(tracks_.begin(), tracks_.end(), is_lost), tracks_.end());
+}
+
+std::vector<Expected> ObjectTracker::expected(double stamp, Eigen::Vector3d Track::*extent) const {
+  std::vector<Expected> expected;
+  for (const Track& track : tracks_) {
+    if (!track.dynamic) continue;
+    expected.push_back({track.centerAt(stamp), track.*extent, stamp - track.last_moved_whole < kMovesOn});
+  }
+  return expected;
+}
+
+const Trace* ObjectTracker::Track::traceBefore(double stamp) const {
+  const Trace* before = nullptr;
+  for (const Trace& trace : traces) {
+    if (trace.stamp <= stamp) before = &trace;
+  }
+  return before;
 }
 
 ObjectTracker::Track& ObjectTracker::trackOf(std::size_t candidate_index, double stamp, const Candidate& candidate) {
@@ -54,7 +72,7 @@ ObjectTracker::Track& ObjectTracker::trackOf(std::size_t candidate_index, double
   track.id = next_id_++;
   track.first_seen = track.last_seen = stamp;
   track.center = candidate.center();
-  track.extent = candidate.extent();
+  track.extent = track.full_extent = candidate.extent();
   tracks_.push_back(std::move(track));
   return tracks_.back();
 }
@@ -63,7 +81,7 @@ void ObjectTracker::match(double stamp, const std::vector<Candidate>& candidates
   pairs_.clear();
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     const Track& track = tracks_[t];
-    const Eigen::Vector3d predicted = track.center + track.velocity * (stamp - track.last_seen);
+    const Eigen::Vector3d predicted = track.centerAt(stamp);
     const double step = track.first_seen < track.last_seen ? kFollowedStep : kLargestStep;
     for (std::size_t c = 0; c < candidates.size(); ++c) {
       const double distance = (candidates[c].center() - predicted).norm();
@@ -93,55 +111,61 @@ void ObjectTracker::follow(Track& track, double stamp, const Candidate& candidat
   }
   track.center = candidate.center();
   track.extent = candidate.extent();
+  track.full_extent = track.extent.cwiseMax(kForgetExtent * track.full_extent);
   track.last_seen = stamp;
 }
 
-ObjectTracker::Former ObjectTracker::lookBack(const Track& track, double to,
-                                              const Eigen::Isometry3d& points_from_odom,
-                                              const SightHistory& history) {
-  const Trace* former = nullptr;
-  for (const Trace& trace : track.traces) {
-    if (trace.stamp <= to) former = &trace;
-  }
-  Former result;
-  if (former == nullptr) return result;
-  for (const Eigen::Vector3d& point : former->in_odom) {
-    const SightImage::Sight sight = history.askNewest((points_from_odom * point).cast<float>());
-    result.left += sight == SightImage::Sight::kFree ? 1 : 0;
-    result.still += sight == SightImage::Sight::kSurface ? 1 : 0;
-  }
-  return result;
-}
-
-void ObjectTracker::decide(Track& track, double stamp, Candidate& candidate, const std::array<Former, 2>& former) {
-  const bool mostly_settled = 2 * static_cast<std::size_t>(candidate.settled_echoes) > candidate.echoes.size();
-  bool receded = false, advanced = false;
-  for (const Former& then : former) {
-    receded |= !mostly_settled && then.left >= config_.min_echoes && then.left > then.still;
-    advanced |= !mostly_settled && then.left >= kLeastLeft && candidate.new_echoes >= config_.min_echoes;
+void ObjectTracker::weigh(Track& track, const MotionEvidence& evidence, double stamp, const Candidate& candidate) const {
+  bool receded = false, advanced = false, moved = false;
+  // What was cut out where it was expected cannot prove by its place that it went there.
+  const bool may_tell = !candidate.cut_out && !isMostlySettled(candidate);
+  for (const double ago : kLookBack) {
+    const Trace* trace = may_tell ? track.traceBefore(stamp - ago) : nullptr;
+    if (trace == nullptr) continue;
+    const Former former = evidence.lookBack(*trace);
+    receded |= former.left >= config_.min_echoes && former.left > former.still;
+    advanced |= former.left >= kLeastLeft && candidate.new_echoes >= config_.min_echoes;
+    moved = moved || evidence.hasMoved(*trace, candidate);
   }
   track.receding_scans = receded ? track.receding_scans + 1 : 0;
   track.advancing_scans = advanced ? track.advancing_scans + 1 : 0;
-  const bool moves = isNew(candidate, config_) || track.receding_scans >= kScansToBelieve || track.advancing_scans >= kScansToBelieve;
+  track.moving_scans = moved ? track.moving_scans + 1 : 0;
+}
+
+void ObjectTracker::decide(Track& track, double stamp, Candidate& candidate) const {
+  const bool moves_whole = track.receding_scans >= kScansToBelieve || track.moving_scans >= kScansToBelieve;
+  const bool has_evidence = moves_whole || track.advancing_scans >= kScansToBelieve || isNew(candidate, config_);
+  const bool moves = has_evidence && !isThin(candidate, sensor_);
+  if (moves_whole) track.last_moved_whole = stamp;
   if (moves) track.last_motion = stamp;
-  const bool just_stopped = track.dynamic && !mostly_settled && stamp - track.last_motion <= config_.stop_time;
+  const bool just_stopped = track.dynamic && !isMostlySettled(candidate) && stamp - track.last_motion <= config_.stop_time;
   track.dynamic = moves || just_stopped;
   track.ever_dynamic = track.ever_dynamic || track.dynamic;
   candidate.dynamic = track.dynamic;
+  candidate.moves_whole = stamp - track.last_moved_whole <= kReleaseAfter;
+}
+
+void ObjectTracker::complete(const std::vector<Expected>& wholes, std::vector<Candidate>& candidates) {
+  // A pole before a vehicle leaves fragments of it, too small to tell anything themselves.
+  for (const Expected& whole : wholes) {
+    if (!whole.moves_whole || !whole.isLong()) continue;
+    const Eigen::Array3d half = 0.5 * whole.extent.array() + kRim;
+    for (Candidate& candidate : candidates) {
+      const bool settled = candidate.settled_echoes > kSettledFragment * static_cast<double>(candidate.echoes.size());
+      const bool inside = ((candidate.low - whole.center).array() > -half).all() &&
+                          ((candidate.high - whole.center).array() < half).all();
+      if (inside && !settled && !candidate.dynamic) candidate.dynamic = candidate.moves_whole = true;
+    }
+  }
 }
 
 void ObjectTracker::leaveTrace(Track& track, const JudgedScan& scan, const Candidate& candidate) {
   Trace trace;
-  while (track.traces.size() > 1 && track.traces[1].stamp <= scan.stamp - kLookBack[1]) {
+  while (track.traces.size() > 1 && track.traces[1].stamp <= scan.stamp - kLookBack.back()) {
     trace = std::move(track.traces.front());  // its storage is used again
     track.traces.pop_front();
   }
-  trace.stamp = scan.stamp;
-  trace.in_odom.clear();
-  const std::size_t stride = candidate.echoes.size() / kTracePoints + 1;
-  for (std::size_t i = 0; i < candidate.echoes.size(); i += stride) {
-    trace.in_odom.push_back(scan.odom_from_points * scan.points[candidate.echoes[i]].cast<double>());
-  }
+  takeTrace(scan, candidate, trace);
   track.traces.push_back(std::move(trace));
 }
 

@@ -13,6 +13,7 @@ void SightHistory::add(const Scan& scan, const std::vector<std::uint8_t>& is_ech
   next.stamp = scan.stamp;
   next.sensor_from_odom = scan.odomFromSensor().inverse();
   if (!kept_.empty()) next.image.takeWorkspace(kept_.back().image);
+  if (!kept_.empty()) next.image.takeGapsFrom(kept_.back().image);
   next.image.build(scan.echoes, is_echo, reading_);
   kept_.push_back(std::move(next));
 }
@@ -35,9 +36,14 @@ SightHistory::Evidence SightHistory::ask(const Eigen::Vector3f& point, double si
   return evidence;
 }
 
-SightImage::Sight SightHistory::askNewest(const Eigen::Vector3f& point) const {
+SightImage::Sight SightHistory::askNewest(const Eigen::Vector3f& point, float margin) const {
   if (kept_.empty()) return SightImage::Sight::kUnknown;
-  return kept_.back().image.at(kept_.back().sensor_from_asked * point, margin_);
+  return kept_.back().image.at(kept_.back().sensor_from_asked * point, margin);
+}
+
+SightImage::Sight SightHistory::askThroughGaps(const Eigen::Vector3f& point, float margin) const {
+  if (kept_.empty()) return SightImage::Sight::kUnknown;
+  return kept_.back().image.throughGaps(kept_.back().sensor_from_asked * point, margin);
 }
 
 std::size_t SightHistory::memoryBytes() const {

@@ -61,6 +61,7 @@ DONEX_WIDE_LOOPS void projectAll(const Eigen::Vector3f* echoes, const std::uint8
 void SightImage::build(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo,
                        const Reading& reading) {
   collect(echoes, is_echo);
+  hit_ = nearest_;
   if (!reading.careful) return;
   fillBetweenBeams(static_cast<int>(reading.largest_gap / static_cast<double>(kRowHeight)));
   fillBetweenColumns();
@@ -140,11 +141,19 @@ void SightImage::erode() {
 }
 
 SightImage::Sight SightImage::at(const Eigen::Vector3f& point, float margin) const {
+  return read(nearest_, point, margin);
+}
+
+SightImage::Sight SightImage::throughGaps(const Eigen::Vector3f& point, float margin) const {
+  return read(hit_, point, margin);
+}
+
+SightImage::Sight SightImage::read(const std::vector<Range>& image, const Eigen::Vector3f& point, float margin) const {
   const Projected pixel = project(point.x(), point.y(), point.z());
   if (!pixel.valid) return Sight::kUnknown;
   const int row = pixel.row - first_row_;
-  if (row < 0 || row >= rows_) return Sight::kUnknown;
-  const Range nearest = nearest_[static_cast<std::size_t>(pixel.column * rows_ + row)];
+  if (row < 0 || row >= rows_ || image.empty()) return Sight::kUnknown;
+  const Range nearest = image[static_cast<std::size_t>(pixel.column * rows_ + row)];
   if (nearest == 0) return Sight::kUnknown;
   const float beyond = static_cast<float>(nearest) * kRangeStep - pixel.range;
   if (beyond > margin) return Sight::kFree;
@@ -152,7 +161,7 @@ SightImage::Sight SightImage::at(const Eigen::Vector3f& point, float margin) con
 }
 
 std::size_t SightImage::memoryBytes() const {
-  return (nearest_.capacity() + scratch_.capacity()) * sizeof(Range) + pixels_.bytes();
+  return (nearest_.capacity() + hit_.capacity() + scratch_.capacity()) * sizeof(Range) + pixels_.bytes();
 }
 
 }  // namespace donex

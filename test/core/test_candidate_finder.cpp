@@ -14,10 +14,10 @@ using Candidates = std::vector<Candidate>;
 
 constexpr double kReach = 40.0;
 
-Candidates found(const JudgedThings& things) {
+Candidates found(const JudgedThings& things, const std::vector<Expected>& expected = {}) {
   CandidateFinder finder(kReach, ObjectConfig{});
   Candidates candidates;
-  finder.find(things.judged, candidates);
+  finder.find(things.judged, expected, candidates);
   return candidates;
 }
 
@@ -139,6 +139,72 @@ TEST_F(Release, AnUnobservedNeighbourThatIsLargerGoes) {
 TEST_F(Release, WhatDoesNotMoveIsLeftAsItIs) {
   build(1.2, Place::kSettled, 1.2);
   EXPECT_EQ(kept(false), things_.judged.points.size());
+}
+
+/// A car's rear and side at x 5 to 9, y 2 to 3.8, that touches the front of a house seen for the first time.
+JudgedThings carAtAHouse() {
+  JudgedThings things(0.0);
+  things.face({5.0, 2.0, 0.3}, {4.0, 0.0, 0.0}, 1.2, Place::kUnobserved);
+  things.face({5.0, 2.0, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kUnobserved);
+  things.face({2.0, 4.1, 0.3}, {14.0, 0.0, 0.0}, 3.0, Place::kUnobserved);
+  return things;
+}
+
+Expected expectedCar(bool moves_whole = true, double x = 7.0) {
+  return {{x, 2.9, 0.9}, {4.0, 1.8, 1.2}, moves_whole};
+}
+
+TEST(CandidateFinder, WhatIsExpectedIsCutOutOfWhatItRanInto) {
+  const JudgedThings things = carAtAHouse();
+  EXPECT_EQ(found(things).size(), 1U);
+  const Candidates candidates = found(things, {expectedCar()});
+  ASSERT_EQ(candidates.size(), 2U);
+  EXPECT_FALSE(candidates[0].cut_out);
+  EXPECT_TRUE(candidates[1].cut_out);
+  EXPECT_EQ(candidates[1].echoes.size(), (41U + 19U) * 13U);
+  EXPECT_NEAR(candidates[1].extent().x(), 4.0, 1e-4);
+  EXPECT_EQ(candidates[0].echoes.size() + candidates[1].echoes.size(), things.judged.points.size());
+}
+
+TEST(CandidateFinder, NothingIsCutOutWithoutAReason) {
+  const JudgedThings things = carAtAHouse();
+  EXPECT_EQ(found(things, {expectedCar(false)}).size(), 1U) << "it was never seen to move as one";
+  EXPECT_EQ(found(things, {expectedCar(true, 40.0)}).size(), 1U) << "it is expected elsewhere";
+  EXPECT_EQ(found(things, {{{9.0, 4.0, 1.5}, {14.0, 2.4, 3.0}, true}}).size(), 1U) << "the whole looks like it";
+  EXPECT_EQ(found(things, {{{5.0, 2.0, 0.9}, {0.6, 0.6, 1.2}, true}}).size(), 1U) << "too short to settle under itself";
+}
+
+TEST(CandidateFinder, ALongThingThatIsExpectedStaysWholeWhereItsSideSettles) {
+  JudgedThings things(0.0);
+  things.face({5.0, 2.0, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kUnobserved);
+  things.face({5.0, 2.0, 0.3}, {1.2, 0.0, 0.0}, 1.2, Place::kSettled);
+  things.face({6.3, 2.0, 0.3}, {2.7, 0.0, 0.0}, 1.2, Place::kUnobserved);
+  for (int i = 0; i < 6; ++i) things.echo({9.0, 2.0, 0.3 + 0.1 * i}, Place::kNew);
+  const Candidates apart = found(things);
+  EXPECT_EQ(std::count_if(apart.begin(), apart.end(), [](const Candidate& c) { return c.settled_echoes > 0; }), 0);
+  const Candidates whole = found(things, {expectedCar(false)});
+  ASSERT_EQ(whole.size(), 1U);
+  EXPECT_EQ(whole[0].echoes.size(), things.judged.points.size());
+}
+
+TEST(CandidateFinder, AThingThatHidesAmongWhatIsSettledIsTakenFromIt) {
+  JudgedThings things(0.0);
+  things.face({6.0, 1.0, 0.3}, {0.0, 0.5, 0.0}, 1.5, Place::kUnobserved);
+  things.face({6.0, 1.6, 0.3}, {0.0, 6.0, 0.0}, 1.5, Place::kSettled);
+  EXPECT_EQ(found(things)[0].settled_echoes, 61 * 16) << "nothing is new, nothing is expected";
+  const Candidates candidates = found(things, {{{6.0, 1.2, 1.0}, {0.1, 0.5, 1.5}, false}});
+  ASSERT_EQ(candidates.size(), 1U);
+  EXPECT_EQ(candidates[0].echoes.size(), 6U * 16U);
+}
+
+TEST(CandidateFinder, AnEdgeIsThinAndFarThingsAreNot) {
+  Candidate edge;
+  edge.low = Eigen::Vector3d(12.0, -1.0, 2.0);
+  edge.high = Eigen::Vector3d(12.0, 1.0, 2.1);
+  EXPECT_TRUE(isThin(edge, Eigen::Vector3d::Zero()));
+  EXPECT_FALSE(isThin(edge, Eigen::Vector3d(-20.0, 0.0, 0.0))) << "beams are too sparse to tell";
+  edge.high.z() = 2.5;
+  EXPECT_FALSE(isThin(edge, Eigen::Vector3d::Zero()));
 }
 
 }  // namespace

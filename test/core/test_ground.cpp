@@ -81,6 +81,12 @@ TEST(Ground, SlopesOfTenPercent) {
   }
 }
 
+TEST(Ground, SlopesThatNoCellAlongsideWouldFollow) {
+  for (const auto& [x, y] : {std::pair{0.15, 0.0}, {0.0, -0.15}}) {
+    EXPECT_GT(GroundUnder(sloping(x, y)).rightOnGround(), 0.95) << x << ' ' << y;
+  }
+}
+
 TEST(Ground, AKerbIsGround) {
   HeightWorld world;
   world.ground = [](double, double y) { return std::abs(y) > 3.5 ? 0.12 : 0.0; };

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "donex/core/candidate_finder.h"
 #include "donex/core/object_tracker.h"
 #include "support/judged_things.h"
 
@@ -22,7 +23,7 @@ class Followed {
   std::size_t step(const JudgedThings& things) {
     history_.add(things.scan(), things.judged.is_echo);
     history_.askFrom(things.judged.odom_from_points);
-    finder_.find(things.judged, candidates);
+    finder_.find(things.judged, tracker.expected(things.judged.stamp), candidates);
     tracker.update(things.judged, history_, candidates);
     std::size_t moving = 0;
     for (const Candidate& candidate : candidates) moving += candidate.dynamic ? candidate.echoes.size() : 0U;
@@ -150,6 +151,50 @@ TEST(ObjectTracker, WhatSettlesStandsAtOnce) {
     JudgedThings things(0.1 * k);
     addVehicle(things, 8.0, 2.0, k < 10 ? Place::kNew : Place::kSettled);
     EXPECT_EQ(followed.step(things) > 0, k < 10) << "scan " << k;
+  }
+}
+
+TEST(ObjectTracker, WhatASlowThingLeavesBehindAFenceTells) {
+  // Careful sight knows nothing behind a fence; the thing's own shape, found elsewhere, tells.
+  Followed followed;
+  std::size_t moving = 0, person = 0;
+  for (int k = 0; k < 20; ++k) {
+    JudgedThings things(0.1 * k);
+    const double y = -3.0 + 0.12 * k;
+    things.face({9.0, y, 0.4}, {0.0, 0.5, 0.0}, 1.4, Place::kUnobserved, 0.05);
+    person = things.judged.points.size();
+    for (int picket = 0; picket < 40; ++picket) {
+      things.face({6.0, -4.0 + 0.2 * picket, 0.0}, {0.0, 0.02, 0.0}, 1.1, Place::kSettled, 0.02);
+    }
+    things.face({25.0, -15.0, 0.0}, {0.0, 30.0, 0.0}, 5.0, Place::kSettled);
+    moving = followed.step(things);
+  }
+  EXPECT_EQ(moving, person);
+}
+
+TEST(ObjectTracker, FragmentsOfAVehicleBehindAPoleMoveWithIt) {
+  Followed followed;
+  for (int k = 0; k < 15; ++k) {
+    JudgedThings things(0.1 * k);
+    const double x = 12.0 + 0.6 * k;
+    things.face({x, -0.9, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kUnobserved, 0.05);
+    const bool is_hidden_in_part = k == 14;
+    things.face({x, -0.9, 0.3}, {is_hidden_in_part ? 2.0 : 4.0, 0.0, 0.0}, 1.2, Place::kUnobserved, 0.05);
+    // Seven echoes beyond a gap that connects nothing.
+    if (is_hidden_in_part) things.face({x + 3.7, -0.9, 0.3}, {0.0, 0.05, 0.0}, 0.3, Place::kUnobserved, 0.05);
+    const std::size_t moving = followed.step(things);
+    const bool is_known = k > 8;
+    EXPECT_TRUE(!is_known || moving == things.judged.points.size()) << "scan " << k << ": " << moving;
+  }
+  EXPECT_EQ(followed.candidates.size(), 2U);
+}
+
+TEST(ObjectTracker, AThinThingNeverMoves) {
+  Followed followed;
+  for (int k = 0; k < 10; ++k) {
+    JudgedThings things(0.1 * k);
+    things.face({8.0 + 0.5 * k, 2.0, 2.2}, {0.0, 1.5, 0.0}, 0.05, Place::kNew, 0.05);
+    EXPECT_EQ(followed.step(things), 0U);
   }
 }
 

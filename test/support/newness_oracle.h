@@ -74,8 +74,8 @@ class Newness3d : public Newness {
     }
     State& state = voxels_[voxel];
     state.last_hit = now();
-    if (!isYoung(state.birth, state.was_free) || state.at_surface) return Place::kSettled;
-    return state.was_free ? Place::kNew : Place::kUnobserved;
+    if (!isYoung(state.birth, state.was_free)) return Place::kSettled;
+    return state.was_free && !state.at_surface ? Place::kNew : Place::kUnobserved;
   }
 
  private:

@@ -41,13 +41,17 @@ class Ground {
     return static_cast<std::size_t>((y + width_ / 2) * width_ + x + width_ / 2);
   }
   float heightIn(int cell, float z) const;
-  float startingHeight();
+  static Eigen::Vector2f offsetOf(const Cell& cell);  ///< from the sensor's cell [m]
+  bool findStart();                                   ///< false where no echo is near
+  Eigen::Vector3f fitStart(float reach) const;
+  /// Height of the plane around the sensor, `offset` [m] from there.
+  float startAt(const Eigen::Vector2f& offset) const { return start_.head<2>().dot(offset) + start_.z(); }
   /// What the ground of nearer cells lets expect.
   struct Continuation {
     float height;
     float unseen;  ///< how far away the ground was last seen [m]
   };
-  Continuation continueTo(const Cell& cell, float start) const;
+  Continuation continueTo(const Cell& cell) const;
 
   int width_;                            ///< cells along an edge
   Eigen::Vector3f sensor_ = Eigen::Vector3f::Zero();
@@ -56,7 +60,8 @@ class Ground {
   std::vector<int> cell_of_;             ///< by echo, -1 outside
   std::vector<float> lowest_, ground_;   ///< by cell [m]
   std::vector<float> unseen_;            ///< by cell: how far the ground is only continued [m]
-  std::vector<float> near_;
+  std::vector<Eigen::Vector3f> near_;    ///< lowest echoes of the cells around the sensor, from there [m]
+  Eigen::Vector3f start_ = Eigen::Vector3f::Zero();  ///< slopes along x, y, and the height under the sensor [m]
 };
 
 }  // namespace donex

@@ -1,14 +1,12 @@
 // Connected echoes followed over time: is this thing moving? (algorithm section 5, step 6)
 #pragma once
 
-#include <array>
 #include <deque>
+#include <limits>
 #include <vector>
 
-#include "donex/core/candidate_finder.h"
-#include "donex/core/config.h"
+#include "donex/core/motion_evidence.h"
 #include "donex/core/object.h"
-#include "donex/core/sight_history.h"
 
 namespace donex {
 
@@ -16,7 +14,8 @@ namespace donex {
 ///  - where enough of its echoes are new: its front comes into space that was free;
 ///  - where its former place is now seen free: its rear has receded. This finds a vehicle ahead at the
 ///    ego vehicle's own speed, whose front nobody sees and whose rear only ever enters its own shadow;
-///  - where a little of both is true: the ends of a long vehicle that passes by.
+///  - where a little of both is true: the ends of a long vehicle that passes by;
+///  - where its former shape fits it at another place, and is gone from the old one.
 class ObjectTracker {
  public:
   explicit ObjectTracker(const ObjectConfig& config) : config_(config) {}
@@ -25,6 +24,9 @@ class ObjectTracker {
   /// scan is this one.
   void update(const JudgedScan& scan, const SightHistory& history, std::vector<Candidate>& candidates);
 
+  /// Where the moving objects should be at `stamp` [s].
+  std::vector<Expected> expected(double stamp) const { return expected(stamp, &Track::extent); }
+
   /// Objects of the last scan that move, or moved since they are followed.
   const std::vector<Object>& objects() const { return objects_; }
 
@@ -32,23 +34,21 @@ class ObjectTracker {
   std::size_t memoryBytes() const;
 
  private:
-  /// Where some of an object's echoes were.
-  struct Trace {
-    double stamp;
-    std::vector<Eigen::Vector3d> in_odom;
-  };
+  static constexpr double kNever = -std::numeric_limits<double>::infinity();
+
   struct Track {
     std::uint32_t id = 0;
     Eigen::Vector3d center, extent, velocity = Eigen::Vector3d::Zero();
-    double first_seen = 0.0, last_seen = 0.0, last_motion = 0.0;
-    int receding_scans = 0, advancing_scans = 0;  ///< in a row
+    Eigen::Vector3d full_extent;  ///< as seen when less of it was hidden
+    double first_seen = 0.0, last_seen = 0.0;
+    double last_motion = kNever, last_moved_whole = kNever;
+    int receding_scans = 0, advancing_scans = 0, moving_scans = 0;  ///< in a row
     bool dynamic = false, ever_dynamic = false;
     std::deque<Trace> traces;
-  };
-  /// What the present scan sees where an object was: points of its trace.
-  struct Former {
-    int left = 0;   ///< free now
-    int still = 0;  ///< a surface still
+
+    Eigen::Vector3d centerAt(double stamp) const { return center + velocity * (stamp - last_seen); }
+    /// The latest trace not younger than `stamp`, or nullptr.
+    const Trace* traceBefore(double stamp) const;
   };
   struct Pair {
     double distance;
@@ -58,13 +58,15 @@ class ObjectTracker {
   void match(double stamp, const std::vector<Candidate>& candidates);
   Track& trackOf(std::size_t candidate_index, double stamp, const Candidate& candidate);
   static void follow(Track& track, double stamp, const Candidate& candidate);
-  static Former lookBack(const Track& track, double to, const Eigen::Isometry3d& points_from_odom,
-                         const SightHistory& history);
-  void decide(Track& track, double stamp, Candidate& candidate, const std::array<Former, 2>& former);
+  void weigh(Track& track, const MotionEvidence& evidence, double stamp, const Candidate& candidate) const;
+  void decide(Track& track, double stamp, Candidate& candidate) const;
+  std::vector<Expected> expected(double stamp, Eigen::Vector3d Track::*extent) const;
+  static void complete(const std::vector<Expected>& wholes, std::vector<Candidate>& candidates);
   static void leaveTrace(Track& track, const JudgedScan& scan, const Candidate& candidate);
   void describe(const Track& track, const JudgedScan& scan, const Candidate& candidate);
 
   ObjectConfig config_;
+  Eigen::Vector3d sensor_ = Eigen::Vector3d::Zero();  ///< of the present scan, odometry frame [m]
   std::vector<Track> tracks_;
   std::vector<Pair> pairs_;
   std::vector<int> track_of_;  ///< by candidate, -1 where it is followed for the first time

@@ -31,8 +31,11 @@ class SightHistory {
   /// What the kept scans later than `since` [s] saw at `point`; stops early once `enough` of them saw it free.
   Evidence ask(const Eigen::Vector3f& point, double since, int enough) const;
 
-  /// What the newest scan alone saw at `point`.
-  SightImage::Sight askNewest(const Eigen::Vector3f& point) const;
+  /// What the newest scan alone saw at `point`, on `margin` [m].
+  SightImage::Sight askNewest(const Eigen::Vector3f& point, float margin) const;
+  SightImage::Sight askNewest(const Eigen::Vector3f& point) const { return askNewest(point, margin_); }
+  /// The same of its single lines of sight: between the wires of a fence they see through.
+  SightImage::Sight askThroughGaps(const Eigen::Vector3f& point, float margin) const;
 
   bool empty() const { return kept_.empty(); }
   void reset() { kept_.clear(); }

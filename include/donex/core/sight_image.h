@@ -39,6 +39,12 @@ class SightImage {
   /// beyond, surface within the margin, hidden behind one, or nothing known.
   Sight at(const Eigen::Vector3f& point, float margin) const;
 
+  /// The same of the single lines of sight, not read carefully; unknown once the gaps were taken.
+  Sight throughGaps(const Eigen::Vector3f& point, float margin) const;
+
+  /// Takes the storage for single lines of sight over from a scan that is not asked for them any more.
+  void takeGapsFrom(SightImage& older) { hit_.swap(older.hit_); }
+
   std::size_t memoryBytes() const;
 
  private:
@@ -55,15 +61,17 @@ class SightImage {
     std::size_t bytes() const { return 3 * columns.capacity() * sizeof(float); }
   };
 
+  using Range = std::uint16_t;  ///< [kRangeStep], rounded down; 0 where nothing is known
+
+  Sight read(const std::vector<Range>& image, const Eigen::Vector3f& point, float margin) const;
   void collect(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo);
   void fillBetweenBeams(int largest_gap);
   void fillBetweenColumns();
   void erode();
 
-  using Range = std::uint16_t;  ///< [kRangeStep], rounded down; 0 where nothing is known
-
   int first_row_ = 0, rows_ = 0;  ///< the part of the image that the sensor covers
   std::vector<Range> nearest_;    ///< by column, then row
+  std::vector<Range> hit_;        ///< the same, of single lines of sight
   std::vector<Range> scratch_;
   Pixels pixels_;
 };

@@ -1,0 +1,56 @@
+// A thing of one scan that may move (algorithm section 5, step 6).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "donex/core/config.h"
+#include "donex/core/judged_scan.h"
+
+namespace donex {
+
+/// A thing of the present scan and what its echoes say.
+struct Candidate {
+  std::vector<std::uint32_t> echoes;  ///< indices into the scan
+  int new_echoes = 0;
+  int settled_echoes = 0;
+  Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();  ///< odometry frame [m]
+  bool cut_out = false;      ///< cut from a larger cluster where a moving thing was expected
+  bool dynamic = false;      ///< the verdict
+  bool moves_whole = false;  ///< the verdict is about the whole thing, not about its new echoes alone
+
+  Eigen::Vector3d center() const { return 0.5 * (low + high); }
+  Eigen::Vector3d extent() const { return high - low; }
+};
+
+/// Where a moving thing that is followed should be now, odometry frame [m].
+struct Expected {
+  Eigen::Vector3d center, extent;
+  bool moves_whole = false;  ///< it was seen to move as one not long ago
+
+  /// Longer than what it moves in the birth window: its own side settles under it.
+  bool isLong() const;
+  bool looksLike(const Candidate& candidate) const;
+  /// It is somewhere in the candidate, which is more than that.
+  bool isWithin(const Candidate& candidate) const;
+};
+
+/// Fills in everything that follows from the candidate's echoes.
+void describeEchoes(const JudgedScan& scan, Candidate& candidate);
+
+/// Extents [m] that may be those of one thing, seen from two places.
+bool alike(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+
+/// Longer than any vehicle: a wall, a hedge, or things that touch.
+bool isTooLong(const Candidate& candidate);
+
+/// More of it is settled than not.
+bool isMostlySettled(const Candidate& candidate);
+
+/// Enough of the candidate is new, by number and against what is settled.
+bool isNew(const Candidate& candidate, const ObjectConfig& config);
+
+/// Near, and yet hardly higher than a beam: the edge of something, a wire, a branch. `sensor` in the odometry frame.
+bool isThin(const Candidate& candidate, const Eigen::Vector3d& sensor);
+
+}  // namespace donex
