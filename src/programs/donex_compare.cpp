@@ -158,8 +158,8 @@ void fillTable1(Comparison& comparison, const std::string& directory, const std:
   std::size_t echoes = 0;
   for (std::size_t i = 0; i < scans; ++i) echoes += sequence.echoes(i) / scans;
   comparison.table_1_setting = fmt::format(
-      "Region x 0 to 75 m, y -25 to 25 m, the paper's rule. Published: 160,000 echoes, i7-8650U. Measured: {}, {} scans "
-      "of {} echoes in all directions, those outside the region only see through it; median CPU time.",
+      "Region x 0 to 75 m, y -25 to 25 m, the paper's rule. Published: 160,000 echoes, i7-8650U. Measured: {}, {} "
+      "scans of {} echoes in all directions, those outside the region only see through it; median CPU time.",
       comparison.sequences.front().name, scans, echoes);
   fmt::print("Table 1\n");
   for (Table1Row& row : comparison.table_1) {
