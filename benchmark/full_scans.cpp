@@ -22,7 +22,9 @@ void registerFullScans() {
     for (const Method method : {Method::kDonex2d, Method::kDonex3d}) {
       const std::string name = "default/" + namesOf(method)[static_cast<std::size_t>(method)] + "/" + scene;
       ::benchmark::RegisterBenchmark(name.c_str(), run, std::string(scene), method)
-          ->UseManualTime()->Unit(::benchmark::kMillisecond)->Iterations(116);  // twice the drive: a p99 needs many
+          ->UseManualTime()
+          ->Unit(::benchmark::kMillisecond)
+          ->Iterations(116);  // twice the drive: a p99 needs many
     }
   }
 }

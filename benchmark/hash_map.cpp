@@ -76,7 +76,9 @@ void registerHashMap() {
     for (const char* voxel_size : {"0.2", "0.1"}) {
       const std::string full = std::string("hits/") + name + "/" + voxel_size;
       ::benchmark::RegisterBenchmark(full.c_str(), run, timed, std::stod(voxel_size))
-          ->UseManualTime()->Unit(::benchmark::kMillisecond)->Iterations(1);
+          ->UseManualTime()
+          ->Unit(::benchmark::kMillisecond)
+          ->Iterations(1);
     }
   }
 }

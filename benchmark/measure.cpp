@@ -37,7 +37,9 @@ struct Times {
     cpu.push_back(cpuMilliseconds() - cpu_start);
     wall.push_back(wallMilliseconds() - wall_start);
   }
-  Measured summary() const { return {quantile(cpu, 0.5), quantile(cpu, 0.99), quantile(cpu, 0.0), quantile(wall, 0.5)}; }
+  Measured summary() const {
+    return {quantile(cpu, 0.5), quantile(cpu, 0.99), quantile(cpu, 0.0), quantile(wall, 0.5)};
+  }
 };
 
 }  // namespace

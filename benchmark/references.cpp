@@ -101,17 +101,17 @@ Measured naiveOf(const Config& config, const Scans& scans) {
   std::vector<std::uint64_t> crossed(layout.slots());
   GridScan in_grid;
   return place->second = measure(scans, 1, [&](const Scan& scan) {
-    window.moveTo(scan.odom_from_base);
-    window.enter(scan, in_grid);
-    for (const Eigen::Vector3f& echo : in_grid.echoes) {
-      if (std::isnan(echo.x())) continue;
-      for (const Index3& voxel : LineOfSight(in_grid.origin, echo)) {
-        if (!window.contains(voxel)) continue;
-        const BrickBit at = layout.locate(voxel);
-        crossed[at.slot] |= std::uint64_t{1} << at.bit;
-      }
-    }
-  });
+           window.moveTo(scan.odom_from_base);
+           window.enter(scan, in_grid);
+           for (const Eigen::Vector3f& echo : in_grid.echoes) {
+             if (std::isnan(echo.x())) continue;
+             for (const Index3& voxel : LineOfSight(in_grid.origin, echo)) {
+               if (!window.contains(voxel)) continue;
+               const BrickBit at = layout.locate(voxel);
+               crossed[at.slot] |= std::uint64_t{1} << at.bit;
+             }
+           }
+         });
 }
 
 }  // namespace donex::benchmark

@@ -34,7 +34,8 @@ void run(::benchmark::State& state, const Setting& setting) {
 void add(const std::string& group, const std::string& value, const Setting& setting) {
   const std::string name = namesOf(setting.method)[static_cast<std::size_t>(setting.method)];
   ::benchmark::RegisterBenchmark((group + "/" + name + "/" + value).c_str(), run, setting)
-      ->UseManualTime()->Unit(::benchmark::kMillisecond);
+      ->UseManualTime()
+      ->Unit(::benchmark::kMillisecond);
 }
 
 }  // namespace

@@ -33,7 +33,8 @@ void registerTable1() {
     for (const char* voxel_size : {"0.3", "0.15", "0.1"}) {
       const std::string name = namesOf(method)[static_cast<std::size_t>(method)];
       ::benchmark::RegisterBenchmark(("table_1/" + name + "/" + voxel_size).c_str(), run, method, std::stod(voxel_size))
-          ->UseManualTime()->Unit(::benchmark::kMillisecond);
+          ->UseManualTime()
+          ->Unit(::benchmark::kMillisecond);
     }
   }
 }

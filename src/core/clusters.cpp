@@ -112,7 +112,8 @@ void Clusters::number() {
 }
 
 std::size_t Clusters::memoryBytes() const {
-  return (column_at_.capacity() + cell_in_column_.capacity() + of_.capacity() + number_of_root_.capacity()) * sizeof(int) +
+  return (column_at_.capacity() + cell_in_column_.capacity() + of_.capacity() + number_of_root_.capacity()) *
+             sizeof(int) +
          cells_.capacity() * sizeof(Cell);
 }
 

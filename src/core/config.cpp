@@ -79,15 +79,17 @@ double Config::gridBytes() const {
   if (is_paper) return paperBytes(*this, slots, 0.0);
   // Clusters look at the ground plan in cells, and in cells of half the size.
   const double cells_along = extent.head<2>().maxCoeff() * voxel_size / objects.cell;
-  const double ground_plans = hasEvidence(*this) && objects.enabled ? 5.0 * sizeof(int) * cells_along * cells_along : 0.0;
+  const double ground_plans =
+      hasEvidence(*this) && objects.enabled ? 5.0 * sizeof(int) * cells_along * cells_along : 0.0;
   return slots * bytesASlot(method) + ground_plans;
 }
 
 double memoryBound(const Config& config, std::size_t echoes) {
-  constexpr double kLabels = 2.0;         // bytes an echo
-  constexpr double kJudgedEcho = 80.0;    // with evidence: places, heights, standing, pixels, clusters
+  constexpr double kLabels = 2.0;       // bytes an echo
+  constexpr double kJudgedEcho = 80.0;  // with evidence: places, heights, standing, pixels, clusters
   const auto count = static_cast<double>(echoes);
-  const double of_scan = isPaper(config) ? paperBytes(config, 0.0, count) - paperBytes(config, 0.0, 0.0) : kJudgedEcho * count;
+  const double of_scan =
+      isPaper(config) ? paperBytes(config, 0.0, count) - paperBytes(config, 0.0, 0.0) : kJudgedEcho * count;
   return config.gridBytes() + of_scan + kLabels * count;
 }
 

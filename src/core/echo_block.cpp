@@ -35,10 +35,12 @@ DONEX_WIDE_LOOPS void placeAll(const Placement& p, const float* echoes, EchoBloc
     const bool is_echo = x * x + (y * y + z * z) <= kFarthestEcho * kFarthestEcho;  // false for NaN
     const float bx = base_x(x, y, z), by = base_y(x, y, z), bz = base_z(x, y, z);
     const float ux = to_x(x, y, z), uy = to_y(x, y, z), uz = to_z(x, y, z);
-    const bool in_region = static_cast<int>(bx >= low_x) & static_cast<int>(bx < high_x) & static_cast<int>(by >= low_y) &
-                           static_cast<int>(by < high_y) & static_cast<int>(bz >= low_z) & static_cast<int>(bz < high_z);
-    const bool in_window = static_cast<int>(ux >= 0.0F) & static_cast<int>(ux < extent_x) & static_cast<int>(uy >= 0.0F) &
-                           static_cast<int>(uy < extent_y) & static_cast<int>(uz >= 0.0F) & static_cast<int>(uz < extent_z);
+    const bool in_region = static_cast<int>(bx >= low_x) & static_cast<int>(bx < high_x) &
+                           static_cast<int>(by >= low_y) & static_cast<int>(by < high_y) &
+                           static_cast<int>(bz >= low_z) & static_cast<int>(bz < high_z);
+    const bool in_window = static_cast<int>(ux >= 0.0F) & static_cast<int>(ux < extent_x) &
+                           static_cast<int>(uy >= 0.0F) & static_cast<int>(uy < extent_y) &
+                           static_cast<int>(uz >= 0.0F) & static_cast<int>(uz < extent_z);
     found += static_cast<int>(is_echo);
     block.x[i] = is_echo ? ux : kNone;
     block.y[i] = is_echo ? uy : kNone;
@@ -74,7 +76,8 @@ void EchoBlock::place(const Placement& placement, const Eigen::Vector3f* echoes,
   count = echoes_count;
   if (count == kSize) return placeAll(placement, echoes->data(), *this);
   alignas(64) float padded[3 * kSize];
-  std::fill(std::copy_n(echoes->data(), 3 * count, padded), padded + 3 * kSize, std::numeric_limits<float>::quiet_NaN());
+  std::fill(std::copy_n(echoes->data(), 3 * count, padded), padded + 3 * kSize,
+            std::numeric_limits<float>::quiet_NaN());
   placeAll(placement, padded, *this);
 }
 

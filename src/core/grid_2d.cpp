@@ -118,8 +118,8 @@ void Grid2d::rememberContents() {
     const Index3 cell = layout_.cellOf(slot);
     const Eigen::Vector2d center = cell.head<2>().cast<double>().array() + 0.5;
     const HeightRange& range = cells_[slot].range;
-    contents_.push_back({fromWindow({center.x(), center.y(), range.lo}),
-                         fromWindow({center.x(), center.y(), range.hi}), slot});
+    contents_.push_back(
+        {fromWindow({center.x(), center.y(), range.lo}), fromWindow({center.x(), center.y(), range.hi}), slot});
   }
 }
 

@@ -77,7 +77,8 @@ void Grid3d::take(const Scan& scan, EchoLabels& labels) {
     hit(scan, placement, labels, add);
     rays_.finish();
   } else {
-    // Hits and rays need nothing of each other but the echoes' places, which are quicker computed twice than handed over.
+    // Hits and rays need nothing of each other but the echoes' places, which are quicker computed twice than handed
+    // over.
     const std::size_t blocks = blocksOf(scan.echoes.size());
     const auto some = [&](std::size_t i) {
       forEachBlock(placement, scan.echoes, i * kBlocksAtOnce, std::min((i + 1) * kBlocksAtOnce, blocks), add);

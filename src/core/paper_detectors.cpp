@@ -84,8 +84,10 @@ class PaperDetector : public Detector {
       const Eigen::Vector3f center = (window.odomFromGrid() * window.indexToCenter(voxel)).cast<float>();
       const bool stays = std::binary_search(remembered.begin(), remembered.end(), voxel, isBefore);
       const bool is_hit = std::binary_search(hit_.begin(), hit_.end(), voxel, isBefore);
-      if (!stays) cells.seen_through.push_back(center);
-      else if (!is_hit) cells.shadowed.push_back(center);
+      if (!stays)
+        cells.seen_through.push_back(center);
+      else if (!is_hit)
+        cells.shadowed.push_back(center);
     }
     return cells;
   }

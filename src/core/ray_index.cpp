@@ -36,7 +36,8 @@ DONEX_WIDE_LOOPS void project(const Eigen::Vector3f& origin, float row_low, floa
     const int side = (along_x ? 0 : 1) + (ahead >= 0.0F ? 0 : 2);
     const float column = std::min(std::max((across + 1.0F) * (0.5F * kAcross), 0.0F), kAcross - 1.0F);
     const float row = std::min(std::max((up - row_low) * per_up, 0.0F), kUp - 1.0F);
-    const bool has_direction = static_cast<int>(depth > 0.0F) | static_cast<int>(dz > 0.0F) | static_cast<int>(dz < 0.0F);
+    const bool has_direction =
+        static_cast<int>(depth > 0.0F) | static_cast<int>(dz > 0.0F) | static_cast<int>(dz < 0.0F);
     // NaN passes through min and max as their first argument: converted only where there is a direction.
     const int bin = (side * kAcross + static_cast<int>(has_direction ? column : 0.0F)) * kUp +
                     static_cast<int>(has_direction ? row : 0.0F);

@@ -30,9 +30,7 @@ int sideOf(const Eigen::Vector3f& p) {
   return p.y() >= 0.0F ? 1 : 3;
 }
 
-int acrossBin(float across) {
-  return std::clamp(static_cast<int>((across + 1.0F) * (0.5F * kAcross)), 0, kAcross - 1);
-}
+int acrossBin(float across) { return std::clamp(static_cast<int>((across + 1.0F) * (0.5F * kAcross)), 0, kAcross - 1); }
 
 }  // namespace
 
@@ -43,15 +41,15 @@ struct RayIndex::Shadow {
   bool is_ahead;                  ///< the box begins well ahead of the sensor: what single precision says can be sure
   float across_low, across_high;  ///< tangents
   float up_low, up_high;
-  float across_margin, up_margin; ///< tangents
-  float margin;                   ///< [voxels]
+  float across_margin, up_margin;  ///< tangents
+  float margin;                    ///< [voxels]
   int first_column, last_column, first_row, last_row;
 };
 
 struct RayIndex::BrickAhead {
   int side;
-  Eigen::Vector3f low;                    ///< its lowest corner on that side [voxels]
-  std::array<float, kEdge + 1> per_depth; ///< one over the depths of the faces between its voxels
+  Eigen::Vector3f low;                     ///< its lowest corner on that side [voxels]
+  std::array<float, kEdge + 1> per_depth;  ///< one over the depths of the faces between its voxels
 };
 
 int RayIndex::rowOf(float up) const {
@@ -62,8 +60,9 @@ int RayIndex::rowOf(float up) const {
 inline void RayIndex::findBins(Shadow& shadow) const {
   shadow.across_margin = kMargin * (1.0F + std::max(std::abs(shadow.across_low), std::abs(shadow.across_high)));
   shadow.up_margin = kMargin * (1.0F + std::max(std::abs(shadow.up_low), std::abs(shadow.up_high)));
-  shadow.margin = 2.0F * kMargin * (shadow.far.x() + std::max(std::abs(shadow.near.y()), std::abs(shadow.far.y())) +
-                                    std::max(std::abs(shadow.near.z()), std::abs(shadow.far.z())));
+  shadow.margin = 2.0F * kMargin *
+                  (shadow.far.x() + std::max(std::abs(shadow.near.y()), std::abs(shadow.far.y())) +
+                   std::max(std::abs(shadow.near.z()), std::abs(shadow.far.z())));
   shadow.first_column = acrossBin(std::max(shadow.across_low - shadow.across_margin, -1.0F));
   shadow.last_column = acrossBin(std::min(shadow.across_high + shadow.across_margin, 1.0F));
   shadow.first_row = rowOf(shadow.up_low - shadow.up_margin);
@@ -147,8 +146,8 @@ inline RayIndex::Crossing RayIndex::judge(std::uint32_t ray, const Shadow& box) 
   const bool ends_before = end_across < enter_across - box.margin || end_up < enter_up - box.margin;
   if (in_both < -both_margin || ends_before) return Crossing::kNo;
   const bool passes = in_across > box.across_margin && in_up > box.up_margin && in_both > both_margin;
-  const bool ends_behind = ray_depth > box.far.x() + box.margin || end_across > leave_across + box.margin ||
-                           end_up > leave_up + box.margin;
+  const bool ends_behind =
+      ray_depth > box.far.x() + box.margin || end_across > leave_across + box.margin || end_up > leave_up + box.margin;
   return passes && ends_behind ? Crossing::kYes : Crossing::kUnsure;
 }
 
@@ -165,7 +164,8 @@ inline bool RayIndex::anyRayCrosses(const Shadow& shadow, const Index3& voxel) c
     const std::uint32_t end = bin[shadow.last_row + 1].first;
     for (std::uint32_t first = bin[shadow.first_row].first; first < end; first += kLanes) {
       const Lanes across(&rays_.across[first]), up(&rays_.up[first]), depth(&rays_.depth[first]);
-      const Eigen::Array<float, kLanes, 1> slack = (across - across_low).min(across_high - across)
+      const Eigen::Array<float, kLanes, 1> slack = (across - across_low)
+                                                       .min(across_high - across)
                                                        .min((up - up_low).min(up_high - up))
                                                        .min(depth - shadow.near_depth);
       if (slack.maxCoeff() < 0.0F) continue;
@@ -220,7 +220,8 @@ std::uint64_t RayIndex::seenThrough(std::uint64_t candidates, const Index3& corn
 
 std::uint64_t RayIndex::seenThrough(std::uint64_t candidates, const BrickAhead& at, const Index3& corner) const {
   BrickAhead brick = at;
-  for (int i = 0; i <= kEdge; ++i) brick.per_depth[static_cast<std::size_t>(i)] = 1.0F / (brick.low.x() + static_cast<float>(i));
+  for (int i = 0; i <= kEdge; ++i)
+    brick.per_depth[static_cast<std::size_t>(i)] = 1.0F / (brick.low.x() + static_cast<float>(i));
   Shadow shadow = shadowOf(brick, Index3::Zero(), kEdge);
   findBins(shadow);
   if (!anyRayReaches(shadow)) return 0;

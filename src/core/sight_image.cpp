@@ -9,11 +9,11 @@
 namespace donex {
 namespace {
 
-constexpr int kColumns = 1024;           // a power of two: azimuth wraps by masking
-constexpr float kRowHeight = 0.006F;     // tangent of the elevation
-constexpr float kSteepest = 1.2F;        // tangent beyond which nothing is asked
-constexpr float kRangeStep = 0.02F;      // [m]
-constexpr float kNearest = 0.3F;         // [m] nothing is asked nearer to the sensor's axis
+constexpr int kColumns = 1024;        // a power of two: azimuth wraps by masking
+constexpr float kRowHeight = 0.006F;  // tangent of the elevation
+constexpr float kSteepest = 1.2F;     // tangent beyond which nothing is asked
+constexpr float kRangeStep = 0.02F;   // [m]
+constexpr float kNearest = 0.3F;      // [m] nothing is asked nearer to the sensor's axis
 constexpr float kPi = 3.14159265F;
 
 /// atan2 to 1e-4 rad, the same on every machine; monotone within an octant, which is all a column needs.

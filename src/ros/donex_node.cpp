@@ -28,9 +28,7 @@ constexpr std::uint32_t kOdometryQueue = 1000;
 
 using sensor_msgs::PointCloud2;
 
-bool usesOdometry(OdometrySource source) {
-  return source == OdometrySource::kPose || source == OdometrySource::kTwist;
-}
+bool usesOdometry(OdometrySource source) { return source == OdometrySource::kPose || source == OdometrySource::kTwist; }
 
 /// A call to a function as an entry of a callback queue.
 class QueuedCall : public ros::CallbackInterface {
@@ -96,8 +94,9 @@ DonexNode::Implementation::Implementation(const ros::NodeHandle& nh, const ros::
       pipeline_(config_, tf_, events()),
       diagnostics_(nh, pnh, pipeline_, usesOdometry(config_.motion.source)) {
   constexpr std::size_t kUsualScan = 120000;  // echoes
-  ROS_INFO_STREAM_NAMED("donex", "memory asked for beforehand, for scans of " << kUsualScan << " echoes: "
-                                     << std::lround(memoryBound(config_, kUsualScan) / 1e6) << " MB (memory_limit " << config_.memory_limit
+  ROS_INFO_STREAM_NAMED("donex", "memory asked for beforehand, for scans of "
+                                     << kUsualScan << " echoes: " << std::lround(memoryBound(config_, kUsualScan) / 1e6)
+                                     << " MB (memory_limit " << config_.memory_limit
                                      << " MB); with evidence, records of the voxels hit come on top");
   // A sensor at rest asks tf nothing.
   const bool needs_tf = config_.motion.source != OdometrySource::kNone;

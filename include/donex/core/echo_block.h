@@ -11,10 +11,10 @@ namespace donex {
 
 /// Where a scan lies in the grid's window, in single precision.
 struct Placement {
-  Eigen::Matrix3f rotation;  ///< sensor frame [m] to the window's axes [voxels]
-  Eigen::Vector3f origin;    ///< sensor, in the window [voxels]
-  Eigen::Vector3f extent;    ///< of the window [voxels]
-  Eigen::Matrix3f mounting;  ///< sensor frame to vehicle frame
+  Eigen::Matrix3f rotation;                             ///< sensor frame [m] to the window's axes [voxels]
+  Eigen::Vector3f origin;                               ///< sensor, in the window [voxels]
+  Eigen::Vector3f extent;                               ///< of the window [voxels]
+  Eigen::Matrix3f mounting;                             ///< sensor frame to vehicle frame
   Eigen::Vector3f mounted_at, region_low, region_high;  ///< vehicle frame [m]
 
   /// One echo of the scan in the window; rounds as EchoBlock does.
@@ -25,12 +25,12 @@ struct Placement {
 struct EchoBlock {
   static constexpr int kSize = 256;
 
-  int none = 0;   ///< how many of the entries are no echo
-  int count = 0;  ///< what is behind holds no echo: NaN, not inside
+  int none = 0;                                    ///< how many of the entries are no echo
+  int count = 0;                                   ///< what is behind holds no echo: NaN, not inside
   alignas(64) float x[kSize], y[kSize], z[kSize];  ///< [voxels]; NaN where the echo is none (non-finite, too far)
   /// 1 inside the region of interest and the window, the echo hits the grid; else 0.
   alignas(64) std::int32_t inside[kSize];
-  alignas(64) std::uint8_t observed[kSize];  ///< the same as bytes
+  alignas(64) std::uint8_t observed[kSize];                                 ///< the same as bytes
   alignas(64) std::int32_t voxel_x[kSize], voxel_y[kSize], voxel_z[kSize];  ///< 0 where not inside
 
   Eigen::Vector3i voxel(int i) const { return {voxel_x[i], voxel_y[i], voxel_z[i]}; }

@@ -62,13 +62,13 @@ class Grid2d {
   GridWindow window_;
   CellLayout layout_;
   std::uint32_t scan_ = 0;
-  std::vector<Cell> cells_;  ///< by slot; one more for the echoes outside
+  std::vector<Cell> cells_;         ///< by slot; one more for the echoes outside
   std::vector<Index3> new_voxels_;  ///< the first new_count_ of them
   std::size_t new_count_ = 0;
   std::vector<std::uint32_t> no_echoes_;
-  std::vector<Content> contents_;              ///< resample: one a cell with a range
-  std::vector<std::uint32_t> content_of_cell_; ///< resample: while ranges are moved
-  std::vector<std::uint32_t> hit_;             ///< resample: slots the scan hit, in the order of their first echoes
+  std::vector<Content> contents_;               ///< resample: one a cell with a range
+  std::vector<std::uint32_t> content_of_cell_;  ///< resample: while ranges are moved
+  std::vector<std::uint32_t> hit_;              ///< resample: slots the scan hit, in the order of their first echoes
 };
 
 }  // namespace donex

@@ -81,26 +81,25 @@ class Grid3d {
 
   GridWindow window_;
   BrickLayout layout_;
-  std::vector<Brick> bricks_;  ///< by slot; one more for the echoes outside
-  std::vector<Used> used_;     ///< each once
+  std::vector<Brick> bricks_;       ///< by slot; one more for the echoes outside
+  std::vector<Used> used_;          ///< each once
   std::vector<std::size_t> parts_;  ///< how many of each part of used_ stay
   Workers workers_;
   RayIndex rays_;
   std::vector<Index3> new_voxels_;  ///< the first new_count_ of them
   std::size_t new_count_ = 0;
   std::vector<std::uint32_t> no_echoes_;
-  std::vector<Content> contents_;    ///< resample: one a remembered voxel
-  std::vector<Index3> hit_voxels_;   ///< resample: in the order of their first echoes
+  std::vector<Content> contents_;   ///< resample: one a remembered voxel
+  std::vector<Index3> hit_voxels_;  ///< resample: in the order of their first echoes
 };
 
 template <class Also>
 void Grid3d::hit(const Scan& scan, const Placement& placement, EchoLabels& labels, Also&& also) {
   beginHits(scan.echoes.size(), labels);
-  forEachBlock(placement, scan.echoes, 0, blocksOf(scan.echoes.size()),
-               [&](std::size_t first, const EchoBlock& block) {
-                 hit(first, block, labels);
-                 also(first, block);
-               });
+  forEachBlock(placement, scan.echoes, 0, blocksOf(scan.echoes.size()), [&](std::size_t first, const EchoBlock& block) {
+    hit(first, block, labels);
+    also(first, block);
+  });
 }
 
 /// Bricks `first` to `last` (not included) of used_; those that stay come first then, and are counted.
