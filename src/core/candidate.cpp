@@ -22,7 +22,8 @@ bool Expected::looksLike(const Candidate& candidate) const {
 }
 
 bool Expected::isWithin(const Candidate& candidate) const {
-  const bool inside = ((center - candidate.low).array() > -kAround).all() && ((candidate.high - center).array() > -kAround).all();
+  const bool inside =
+      ((center - candidate.low).array() > -kAround).all() && ((candidate.high - center).array() > -kAround).all();
   return inside && !looksLike(candidate);
 }
 

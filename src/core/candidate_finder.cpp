@@ -5,10 +5,10 @@
 namespace donex {
 namespace {
 
-constexpr double kAcrossAngle = 0.01;  // [rad] wider than any sensor's step in azimuth
+constexpr double kAcrossAngle = 0.01;          // [rad] wider than any sensor's step in azimuth
 constexpr double kRim = 0.3, kTightRim = 0.1;  // [m] around a thing
 constexpr std::size_t kWorthCutting = 10;      // echoes
-constexpr double kUpAngle = 0.015;     // [rad]
+constexpr double kUpAngle = 0.015;             // [rad]
 
 Clusters::Settings clustersOf(const ObjectConfig& config, double cell) {
   return {cell, config.height, kAcrossAngle, kUpAngle};
@@ -87,7 +87,8 @@ bool CandidateFinder::isMixed(const Candidate& candidate, const std::vector<Expe
   const bool is_known = !isMostlySettled(candidate) && std::any_of(expected.begin(), expected.end(), is_it);
   if (is_known) return false;
   const std::size_t unsettled = candidate.echoes.size() - static_cast<std::size_t>(candidate.settled_echoes);
-  const bool has_parts = unsettled >= kWorthCutting && 4 * static_cast<std::size_t>(candidate.settled_echoes) >= unsettled;
+  const bool has_parts =
+      unsettled >= kWorthCutting && 4 * static_cast<std::size_t>(candidate.settled_echoes) >= unsettled;
   const auto is_within = [&](const Expected& thing) { return thing.isWithin(candidate); };
   const bool hides_a_thing = has_parts && std::any_of(expected.begin(), expected.end(), is_within);
   return hides_a_thing || candidate.new_echoes >= config_.min_echoes;

@@ -12,13 +12,11 @@
 namespace donex {
 namespace {
 
-constexpr float kSkirt = 0.07F;            // [m] from here up to the ground clearance echoes may belong to an object
+constexpr float kSkirt = 0.07F;             // [m] from here up to the ground clearance echoes may belong to an object
 constexpr std::size_t kExpectedAhead = 12;  // echoes; long enough for memory to answer
-constexpr double kHistorySpacing = 0.09;   // [s] a 10 Hz sensor's every scan, a 20 Hz sensor's every second
+constexpr double kHistorySpacing = 0.09;    // [s] a 10 Hz sensor's every scan, a 20 Hz sensor's every second
 
-double reachOf(const Region& r) {
-  return std::hypot(std::max(-r.x_min, r.x_max), std::max(-r.y_min, r.y_max));
-}
+double reachOf(const Region& r) { return std::hypot(std::max(-r.x_min, r.x_max), std::max(-r.y_min, r.y_max)); }
 
 SightHistory historyOf(const EvidenceConfig& e) {
   constexpr double kRadians = 3.14159265358979 / 180.0;
@@ -51,8 +49,8 @@ class EvidenceDetector : public Detector {
     newness_.shift(scan.odom_from_base);  // voxel shift (paper, "Ego motion")
     newness_.window().enter(scan, scan_);
     placePoints(scan.stamp);
-    findGround();    // step 5
-    judgePlaces();   // steps 1 to 4, asked of the scans before this one
+    findGround();   // step 5
+    judgePlaces();  // steps 1 to 4, asked of the scans before this one
     history_.add(scan, judged_.is_echo);
     history_.askFrom(judged_.odom_from_points);
     labelPlaces(labels);
@@ -71,9 +69,7 @@ class EvidenceDetector : public Detector {
 
   const std::vector<Object>& objects() const override { return tracker_.objects(); }
 
-  std::vector<Eigen::Vector3f> dynamicCells() const override {
-    return cellCenters(newness_.window(), scan_, dynamic_);
-  }
+  std::vector<Eigen::Vector3f> dynamicCells() const override { return cellCenters(newness_.window(), scan_, dynamic_); }
 
   std::vector<EchoReason> reasons() const override {
     std::vector<EchoReason> reasons(dynamic_.size());
@@ -122,8 +118,10 @@ class EvidenceDetector : public Detector {
       const float height = judged_.heights[i];
       if (scan_.inside[i] == 0) continue;
       const bool is_above = !enabled || height > clearance;
-      if (is_above) judged_.standing[i] = Standing::kIn;
-      else if (height > kSkirt) judged_.standing[i] = Standing::kSkirt;
+      if (is_above)
+        judged_.standing[i] = Standing::kIn;
+      else if (height > kSkirt)
+        judged_.standing[i] = Standing::kSkirt;
     }
   }
 
@@ -132,7 +130,8 @@ class EvidenceDetector : public Detector {
     judged_.places.assign(judged_.points.size(), Place::kUnobserved);
     for (std::size_t i = 0; i < judged_.points.size(); ++i) {
       const std::size_t later = i + kExpectedAhead;
-      if (later < judged_.points.size() && judged_.standing[later] == Standing::kIn) newness_.expect(scan_.echoes[later]);
+      if (later < judged_.points.size() && judged_.standing[later] == Standing::kIn)
+        newness_.expect(scan_.echoes[later]);
       if (judged_.standing[i] != Standing::kIn) continue;
       judged_.places[i] = newness_.judge(scan_.echoes[i], judged_.points[i], clock_, history_);
     }
@@ -181,7 +180,8 @@ class EvidenceDetector : public Detector {
       const Eigen::Vector3f point = (voxel.cast<float>().array() + 0.5F) * size;
       const bool settled = !clock_.isYoung(record.birth, record.was_free);
       const double since = clock_.stampOf(record.last_hit);
-      auto& kind = wasFree(config_.evidence, history_, point, since, true, settled) ? cells.seen_through : cells.shadowed;
+      auto& kind =
+          wasFree(config_.evidence, history_, point, since, true, settled) ? cells.seen_through : cells.shadowed;
       kind.push_back((judged_.odom_from_points * point.cast<double>()).cast<float>());
     });
     return cells;

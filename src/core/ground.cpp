@@ -12,24 +12,24 @@
 namespace donex {
 namespace {
 
-constexpr float kCell = 0.8F;            // [m]
-constexpr int kReach = 2;                // cells over which the ground is continued
-constexpr float kRoughness = 0.15F;      // [m] ground may fall this much from cell to cell anyway: kerbs
-constexpr float kSlope = 0.08F;          // and this much a metre since it was last seen
+constexpr float kCell = 0.8F;        // [m]
+constexpr int kReach = 2;            // cells over which the ground is continued
+constexpr float kRoughness = 0.15F;  // [m] ground may fall this much from cell to cell anyway: kerbs
+constexpr float kSlope = 0.08F;      // and this much a metre since it was last seen
 // It may rise less: where a vehicle hides the ground, its sill is the lowest echo.
-constexpr float kKerb = 0.14F;           // [m]
+constexpr float kKerb = 0.14F;  // [m]
 constexpr float kRise = 0.03F;
-constexpr float kLargestStep = 0.4F;     // [m] never more
+constexpr float kLargestStep = 0.4F;       // [m] never more
 constexpr float kStartUncertainty = 4.0F;  // [m] as if the ground had been seen last this far away
-constexpr float kStartRadius = 7.0F;     // [m] the cells in it tell where the ground starts,
-constexpr std::size_t kStartCells = 24;  // but never fewer than these
+constexpr float kStartRadius = 7.0F;       // [m] the cells in it tell where the ground starts,
+constexpr std::size_t kStartCells = 24;    // but never fewer than these
 constexpr std::array<float, 3> kStartReach = {0.6F, 0.3F, 0.15F};  // [m] off the plane so far
-constexpr double kLevelling = 50.0;  // [m^2] as if so much spoke for level ground
+constexpr double kLevelling = 50.0;                                // [m^2] as if so much spoke for level ground
 constexpr float kNone = std::numeric_limits<float>::infinity();
 
 /// The number of every echo's cell, or -1 outside the map.
-DONEX_WIDE_LOOPS void findCells(const Eigen::Vector3f& sensor, int width, const Eigen::Vector3f* echoes, std::size_t count,
-                                int* cells) {
+DONEX_WIDE_LOOPS void findCells(const Eigen::Vector3f& sensor, int width, const Eigen::Vector3f* echoes,
+                                std::size_t count, int* cells) {
   const float sensor_x = sensor.x(), sensor_y = sensor.y();
   const float* xyz = reinterpret_cast<const float*>(echoes);
   const int middle = width / 2;
@@ -37,8 +37,10 @@ DONEX_WIDE_LOOPS void findCells(const Eigen::Vector3f& sensor, int width, const 
     const float across = std::floor((xyz[3 * i] - sensor_x) / kCell + 0.5F);
     const float along = std::floor((xyz[3 * i + 1] - sensor_y) / kCell + 0.5F);
     const auto half = static_cast<float>(middle);
-    const bool inside = static_cast<int>(std::abs(across) <= half) & static_cast<int>(std::abs(along) <= half);  // not NaN
-    const int x = static_cast<int>(inside ? across : 0.0F) + middle, y = static_cast<int>(inside ? along : 0.0F) + middle;
+    const bool inside =
+        static_cast<int>(std::abs(across) <= half) & static_cast<int>(std::abs(along) <= half);  // not NaN
+    const int x = static_cast<int>(inside ? across : 0.0F) + middle,
+              y = static_cast<int>(inside ? along : 0.0F) + middle;
     cells[i] = inside ? y * width + x : -1;
   }
 }
@@ -64,9 +66,7 @@ Ground::Ground(double reach) : width_(2 * static_cast<int>(std::ceil(reach / sta
   }
 }
 
-Eigen::Vector2f Ground::offsetOf(const Cell& cell) {
-  return kCell * Eigen::Vector2f(cell.x, cell.y);
-}
+Eigen::Vector2f Ground::offsetOf(const Cell& cell) { return kCell * Eigen::Vector2f(cell.x, cell.y); }
 
 void Ground::estimate(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
                       const std::vector<std::uint8_t>& is_echo) {
@@ -165,7 +165,8 @@ float Ground::heightIn(int cell, float z) const {
 }
 
 std::size_t Ground::memoryBytes() const {
-  return outwards_.capacity() * sizeof(Cell) + around_.capacity() * sizeof(Neighbour) + cell_of_.capacity() * sizeof(int) +
+  return outwards_.capacity() * sizeof(Cell) + around_.capacity() * sizeof(Neighbour) +
+         cell_of_.capacity() * sizeof(int) +
          (lowest_.capacity() + ground_.capacity() + unseen_.capacity()) * sizeof(float) +
          near_.capacity() * sizeof(Eigen::Vector3f);
 }

@@ -9,19 +9,20 @@
 namespace donex {
 namespace {
 
-constexpr double kLargestStep = 4.0;       // [m] between two scans, before a velocity is known
-constexpr double kFollowedStep = 1.5;      // [m] off the predicted place
-constexpr double kLost = 0.6;              // [s] unseen for longer: forgotten
+constexpr double kLargestStep = 4.0;   // [m] between two scans, before a velocity is known
+constexpr double kFollowedStep = 1.5;  // [m] off the predicted place
+constexpr double kLost = 0.6;          // [s] unseen for longer: forgotten
 // An object's former place is asked for after these times [s]: soon for the fast, later again for the slow.
 constexpr std::array<double, 3> kLookBack = {0.3, 0.6, 1.0};
-constexpr double kSmoothing = 0.3;         // share of the newest displacement in the velocity
+constexpr double kSmoothing = 0.3;  // share of the newest displacement in the velocity
 constexpr int kScansToBelieve = 2;
-constexpr int kLeastLeft = 3;              // points of a trace
-constexpr double kMovesOn = 1.0;           // [s] after it was seen to move as one, a thing does so still
-constexpr double kReleaseAfter = 0.3;      // [s] but its parts are released sooner
-constexpr double kForgetExtent = 0.9;      // of the former extent remains, a scan
-constexpr double kRim = 0.5;               // [m] around a moving thing
-constexpr double kSettledFragment = 0.2;   // share
+constexpr int kLeastLeft = 3;             // points of a trace
+constexpr double kMovesOn = 1.0;          // [s] after it was seen to move as one, a thing does so still
+constexpr double kSurelyMoving = 5.0;     // [m/s] a hedge that comes into view step by step seems slower
+constexpr double kReleaseAfter = 0.3;     // [s] but its parts are released sooner
+constexpr double kForgetExtent = 0.9;     // of the former extent remains, a scan
+constexpr double kRim = 0.5;              // [m] around a moving thing
+constexpr double kSettledFragment = 0.2;  // share
 
 }  // namespace
 
@@ -49,7 +50,8 @@ std::vector<Expected> ObjectTracker::expected(double stamp, Eigen::Vector3d Trac
   std::vector<Expected> expected;
   for (const Track& track : tracks_) {
     if (!track.dynamic) continue;
-    expected.push_back({track.centerAt(stamp), track.*extent, stamp - track.last_moved_whole < kMovesOn});
+    const bool goes_on = stamp - track.last_moved_whole < kMovesOn && track.velocity.norm() > kSurelyMoving;
+    expected.push_back({track.centerAt(stamp), track.*extent, goes_on});
   }
   return expected;
 }
@@ -107,7 +109,8 @@ void ObjectTracker::follow(Track& track, double stamp, const Candidate& candidat
   if (elapsed > 0.0) {
     const Eigen::Vector3d velocity = (candidate.center() - track.center) / elapsed;
     const bool is_second = track.last_seen <= track.first_seen;
-    track.velocity = is_second ? velocity : Eigen::Vector3d((1.0 - kSmoothing) * track.velocity + kSmoothing * velocity);
+    track.velocity =
+        is_second ? velocity : Eigen::Vector3d((1.0 - kSmoothing) * track.velocity + kSmoothing * velocity);
   }
   track.center = candidate.center();
   track.extent = candidate.extent();
@@ -115,7 +118,8 @@ void ObjectTracker::follow(Track& track, double stamp, const Candidate& candidat
   track.last_seen = stamp;
 }
 
-void ObjectTracker::weigh(Track& track, const MotionEvidence& evidence, double stamp, const Candidate& candidate) const {
+void ObjectTracker::weigh(Track& track, const MotionEvidence& evidence, double stamp,
+                          const Candidate& candidate) const {
   bool receded = false, advanced = false, moved = false;
   // What was cut out where it was expected cannot prove by its place that it went there.
   const bool may_tell = !candidate.cut_out && !isMostlySettled(candidate);
@@ -138,7 +142,8 @@ void ObjectTracker::decide(Track& track, double stamp, Candidate& candidate) con
   const bool moves = has_evidence && !isThin(candidate, sensor_);
   if (moves_whole) track.last_moved_whole = stamp;
   if (moves) track.last_motion = stamp;
-  const bool just_stopped = track.dynamic && !isMostlySettled(candidate) && stamp - track.last_motion <= config_.stop_time;
+  const bool just_stopped =
+      track.dynamic && !isMostlySettled(candidate) && stamp - track.last_motion <= config_.stop_time;
   track.dynamic = moves || just_stopped;
   track.ever_dynamic = track.ever_dynamic || track.dynamic;
   candidate.dynamic = track.dynamic;

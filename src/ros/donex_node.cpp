@@ -14,6 +14,7 @@
 #include "donex/ros/diagnostics.h"
 #include "donex/ros/explanation_clouds.h"
 #include "donex/ros/markers.h"
+#include "donex/ros/object_messages.h"
 #include "donex/ros/parameters.h"
 #include "donex/ros/pipeline.h"
 #include "donex/ros/reconfigure.h"
@@ -80,7 +81,7 @@ class DonexNode::Implementation {
   std::unique_ptr<Reconfigure> reconfigure_;
   bool work_is_queued_ = false;
 
-  ros::Publisher labeled_publisher_, dynamic_publisher_, static_publisher_, marker_publisher_;
+  ros::Publisher labeled_publisher_, dynamic_publisher_, static_publisher_, object_publisher_, marker_publisher_;
   ros::Publisher explained_publisher_, shadowed_publisher_, seen_through_publisher_;  // for the eye
   ros::ServiceServer reset_service_;
   ros::Subscriber cloud_subscriber_, odometry_subscriber_;
@@ -105,6 +106,7 @@ DonexNode::Implementation::Implementation(const ros::NodeHandle& nh, const ros::
   labeled_publisher_ = pnh_.advertise<PointCloud2>("labeled_points", 5);
   dynamic_publisher_ = pnh_.advertise<PointCloud2>("dynamic_points", 5);
   static_publisher_ = pnh_.advertise<PointCloud2>("static_points", 5);
+  object_publisher_ = pnh_.advertise<MovingObjects>("objects", 5);
   marker_publisher_ = pnh_.advertise<visualization_msgs::MarkerArray>("markers", 5);
   explained_publisher_ = pnh_.advertise<PointCloud2>("explained_points", 5);
   shadowed_publisher_ = pnh_.advertise<PointCloud2>("shadowed_cells", 5);
@@ -219,6 +221,9 @@ void DonexNode::Implementation::publish(const LabeledScan& scan) {
   }
   if (static_publisher_.getNumSubscribers() != 0) {
     static_publisher_.publish(selectPart(*scan.cloud, scan.layout, scan.labels, CloudPart::kStatic));
+  }
+  if (object_publisher_.getNumSubscribers() != 0) {
+    object_publisher_.publish(toMessage(scan.detector, scan.cloud->header.stamp, scan.odom_frame));
   }
   if (marker_publisher_.getNumSubscribers() != 0) publishMarkers(scan);
   publishExplanation(scan);

@@ -23,9 +23,9 @@ Candidates found(const JudgedThings& things, const std::vector<Expected>& expect
 
 TEST(CandidateFinder, TellsOfEachThingWhatItsEchoesSay) {
   JudgedThings things(0.0);
-  things.face({6.0, 1.0, 0.5}, {0.0, 1.0, 0.0}, 1.0, Place::kNew);         // 11 x 11
-  things.face({6.0, -4.0, 0.5}, {0.0, 0.5, 0.0}, 1.0, Place::kSettled);    // 6 x 11
-  things.face({-6.0, 0.0, 0.5}, {0.0, 0.2, 0.0}, 0.2, Place::kUnobserved); // 3 x 3
+  things.face({6.0, 1.0, 0.5}, {0.0, 1.0, 0.0}, 1.0, Place::kNew);          // 11 x 11
+  things.face({6.0, -4.0, 0.5}, {0.0, 0.5, 0.0}, 1.0, Place::kSettled);     // 6 x 11
+  things.face({-6.0, 0.0, 0.5}, {0.0, 0.2, 0.0}, 0.2, Place::kUnobserved);  // 3 x 3
   things.judged.odom_from_points.translation() << 100.0, 0.0, 0.0;
   const Candidates candidates = found(things);
   ASSERT_EQ(candidates.size(), 3U);
@@ -150,9 +150,7 @@ JudgedThings carAtAHouse() {
   return things;
 }
 
-Expected expectedCar(bool moves_whole = true, double x = 7.0) {
-  return {{x, 2.9, 0.9}, {4.0, 1.8, 1.2}, moves_whole};
-}
+Expected expectedCar(bool moves_whole = true, double x = 7.0) { return {{x, 2.9, 0.9}, {4.0, 1.8, 1.2}, moves_whole}; }
 
 TEST(CandidateFinder, WhatIsExpectedIsCutOutOfWhatItRanInto) {
   const JudgedThings things = carAtAHouse();

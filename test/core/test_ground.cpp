@@ -15,8 +15,8 @@ using testing::Block;
 using testing::HeightWorld;
 
 constexpr double kReach = 30.0;
-constexpr double kMount = 1.8;           // [m] above the ground
-constexpr float kClearance = 0.25F;      // as the default configuration has it
+constexpr double kMount = 1.8;       // [m] above the ground
+constexpr float kClearance = 0.25F;  // as the default configuration has it
 
 class GroundUnder {
  public:

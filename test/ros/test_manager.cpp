@@ -3,6 +3,8 @@
 #include <std_srvs/Trigger.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include <donex/MovingObjects.h>
+
 #include "ros/manager_rig.h"
 
 namespace donex {
@@ -231,6 +233,18 @@ TEST_F(Manager, markersComeAndGo) {
   });
   send(100.1);
   EXPECT_TRUE(waitFor([&] { return shown.empty(); }));
+}
+
+TEST_F(Manager, objectsAreToldScanByScan) {
+  load();
+  std::vector<MovingObjectsConstPtr> told;
+  const boost::function<void(const MovingObjectsConstPtr&)> take = [&](const auto& objects) { told.push_back(objects); };
+  auto subscriber = nh_.subscribe<MovingObjects>("donex/objects", 5, take);
+  ASSERT_TRUE(waitFor([&] { return subscriber.getNumPublishers() == 1; }));
+  send(100.0);
+  ASSERT_TRUE(waitFor([&] { return told.size() == 1; }));
+  EXPECT_EQ(told[0]->header.frame_id, "odom");
+  EXPECT_EQ(told[0]->header.stamp, ros::Time(100.0));
 }
 
 TEST_F(Manager, layersForTheEyeComeWhileSomebodyLooks) {

@@ -32,7 +32,8 @@ class CandidateFinder {
   };
 
   void append(const JudgedScan& scan, std::vector<Candidate>& candidates) const;
-  void cutOut(const JudgedScan& scan, const Expected& thing, std::size_t whole, std::vector<Candidate>& candidates) const;
+  void cutOut(const JudgedScan& scan, const Expected& thing, std::size_t whole,
+              std::vector<Candidate>& candidates) const;
   bool isMixed(const Candidate& candidate, const std::vector<Expected>& expected) const;
   bool isReleasable(const Candidate& candidate) const { return candidate.dynamic && candidate.new_echoes > 0; }
   void countParts(const JudgedScan& scan, const std::vector<Candidate>& candidates);

@@ -53,14 +53,14 @@ class Ground {
   };
   Continuation continueTo(const Cell& cell) const;
 
-  int width_;                            ///< cells along an edge
+  int width_;  ///< cells along an edge
   Eigen::Vector3f sensor_ = Eigen::Vector3f::Zero();
-  std::vector<Cell> outwards_;           ///< by distance from the sensor
+  std::vector<Cell> outwards_;  ///< by distance from the sensor
   std::vector<Neighbour> around_;
-  std::vector<int> cell_of_;             ///< by echo, -1 outside
-  std::vector<float> lowest_, ground_;   ///< by cell [m]
-  std::vector<float> unseen_;            ///< by cell: how far the ground is only continued [m]
-  std::vector<Eigen::Vector3f> near_;    ///< lowest echoes of the cells around the sensor, from there [m]
+  std::vector<int> cell_of_;                         ///< by echo, -1 outside
+  std::vector<float> lowest_, ground_;               ///< by cell [m]
+  std::vector<float> unseen_;                        ///< by cell: how far the ground is only continued [m]
+  std::vector<Eigen::Vector3f> near_;                ///< lowest echoes of the cells around the sensor, from there [m]
   Eigen::Vector3f start_ = Eigen::Vector3f::Zero();  ///< slopes along x, y, and the height under the sensor [m]
 };
 

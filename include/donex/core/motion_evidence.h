@@ -12,7 +12,7 @@ namespace donex {
 
 /// Where some of an object's echoes were.
 struct Trace {
-  double stamp = 0.0;  ///< [s]
+  double stamp = 0.0;                                ///< [s]
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< of the object, odometry frame [m]
   std::vector<Eigen::Vector3d> in_odom;              ///< [m]
 };

@@ -13,9 +13,9 @@ namespace donex {
 class SightHistory {
  public:
   struct Evidence {
-    int free = 0;      ///< scans that saw through the place
-    int surface = 0;   ///< scans that saw a surface there
-    int hidden = 0;    ///< scans that saw something before it
+    int free = 0;     ///< scans that saw through the place
+    int surface = 0;  ///< scans that saw a surface there
+    int hidden = 0;   ///< scans that saw something before it
   };
 
   /// Keeps scans of the last `length` [s], at most one every `spacing` [s].

@@ -1,0 +1,47 @@
+"""Runs donex_sequence and reads what it prints; for the scripts that make tables of it."""
+import dataclasses
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+BUILT = pathlib.Path(__file__).resolve().parents[1] / "build/.workspace/devel/lib/donex/donex_sequence"
+
+
+@dataclasses.dataclass
+class Figures:
+    iou: str
+    precision: str
+    recall: str
+    milliseconds: str
+
+    def __str__(self):
+        values = " / ".join(f"{float(value):.3f}" for value in (self.iou, self.precision, self.recall))
+        return f"{values}, {float(self.milliseconds):.0f} ms"
+
+
+def program():
+    """The one on the path first (a sourced workspace or install space), then what the scripts built here."""
+    found = shutil.which("donex_sequence") or (str(BUILT) if BUILT.exists() else None)
+    if found is None:
+        sys.exit(f"donex_sequence is neither on the path nor in {BUILT.parent}: run scripts/demo or scripts/test first")
+    return found
+
+
+def label(sequence, arguments=(), settings=()):
+    """Figures of one run; `settings` are name=value. Ends the script where the run failed or had no labels."""
+    command = [program(), str(sequence), *arguments]
+    for setting in settings:
+        command += ["--set", setting]
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    scores = re.search(r"^this run +([\d.]+) +([\d.]+) +([\d.]+)", run.stdout, re.MULTILINE)
+    time = re.search(r"CPU: median ([\d.]+) ms", run.stdout)
+    if run.returncode != 0 or scores is None or time is None:
+        sys.exit(f"{' '.join(command)}\n{run.stdout}{run.stderr}")
+    return Figures(*scores.groups(), time.group(1))
+
+
+def progress(text):
+    if sys.stderr.isatty():
+        print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)

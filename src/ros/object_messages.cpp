@@ -1,0 +1,37 @@
+#include "donex/ros/object_messages.h"
+
+#include <boost/make_shared.hpp>
+#include <tf2_eigen/tf2_eigen.h>
+
+namespace donex {
+namespace {
+
+geometry_msgs::Vector3 vectorOf(const Eigen::Vector3d& vector) {
+  geometry_msgs::Vector3 message;
+  tf2::toMsg(vector, message);
+  return message;
+}
+
+MovingObject messageOf(const Object& object) {
+  MovingObject message;
+  message.id = object.id;
+  message.dynamic = object.dynamic;
+  message.pose = tf2::toMsg(object.odom_from_box);
+  message.size = vectorOf(object.size);
+  message.velocity = vectorOf(object.velocity);
+  message.age.fromSec(object.age);
+  message.echoes = object.echoes;
+  return message;
+}
+
+}  // namespace
+
+MovingObjectsPtr toMessage(const Detector& detector, const ros::Time& stamp, const std::string& odom_frame) {
+  auto message = boost::make_shared<MovingObjects>();
+  message->header.stamp = stamp;
+  message->header.frame_id = odom_frame;
+  for (const Object& object : detector.objects()) message->objects.push_back(messageOf(object));
+  return message;
+}
+
+}  // namespace donex

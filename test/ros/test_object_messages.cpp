@@ -1,0 +1,56 @@
+// What a planner reads of the objects.
+#include <gtest/gtest.h>
+
+#include "donex/ros/object_messages.h"
+
+namespace donex {
+namespace {
+
+class TwoObjects : public Detector {
+ public:
+  void process(const Scan&, EchoLabels&) override {}
+  void reset() override { objects_.clear(); }
+  const std::vector<Object>& objects() const override { return objects_; }
+  std::vector<Eigen::Vector3f> dynamicCells() const override { return {}; }
+  GridOutline outline() const override { return {}; }
+  std::size_t memoryBytes() const override { return 0; }
+
+  std::vector<Object> objects_ = std::vector<Object>(2);
+};
+
+TEST(ObjectMessages, sayWhatTheDetectorKnows) {
+  TwoObjects detector;
+  Object& car = detector.objects_[1];
+  car.id = 7;
+  car.dynamic = true;
+  car.odom_from_box.translation() << 10.0, -3.0, 0.8;
+  car.odom_from_box.rotate(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()));
+  car.size << 4.2, 1.8, 1.5;
+  car.velocity << 8.0, 4.0, 0.0;
+  car.age = 2.5;
+  car.echoes = 321;
+  const MovingObjectsPtr message = toMessage(detector, ros::Time(100.5), "odom");
+  EXPECT_EQ(message->header.frame_id, "odom");
+  EXPECT_EQ(message->header.stamp, ros::Time(100.5));
+  ASSERT_EQ(message->objects.size(), 2U);
+  EXPECT_FALSE(message->objects[0].dynamic);
+  EXPECT_EQ(message->objects[0].pose.orientation.w, 1.0);
+  const MovingObject& moving = message->objects[1];
+  EXPECT_EQ(moving.id, 7U);
+  EXPECT_TRUE(moving.dynamic);
+  EXPECT_EQ(moving.pose.position.y, -3.0);
+  EXPECT_NEAR(moving.pose.orientation.z, std::sin(0.25), 1e-12);
+  EXPECT_EQ(moving.size.x, 4.2);
+  EXPECT_EQ(moving.velocity.y, 4.0);
+  EXPECT_EQ(moving.age, ros::Duration(2.5));
+  EXPECT_EQ(moving.echoes, 321U);
+}
+
+TEST(ObjectMessages, sayAlsoThatNothingMoves) {
+  TwoObjects detector;
+  detector.reset();
+  EXPECT_TRUE(toMessage(detector, ros::Time(1.0), "odom")->objects.empty());
+}
+
+}  // namespace
+}  // namespace donex
