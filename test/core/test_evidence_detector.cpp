@@ -64,7 +64,8 @@ TEST_P(Labels, AreNearTheTruth) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Labels,
-                         ::testing::Values(Floor{"intersection", 0.88, 0.89, 0.97}, Floor{"street", 0.94, 0.94, 0.97}));
+                         ::testing::Values(Floor{"intersection", 0.88, 0.89, 0.97}, Floor{"street", 0.94, 0.94, 0.97},
+                                           Floor{"lead_vehicle", 0.9, 0.9, 0.96}));
 
 class BothGrids : public ::testing::TestWithParam<Method> {
  protected:

@@ -1,4 +1,5 @@
 // Things followed over time: which of them move, and who they are.
+#include <algorithm>
 #include <array>
 
 #include <gtest/gtest.h>
@@ -142,6 +143,20 @@ TEST(ObjectTracker, WhatStopsStaysDynamicForTheStopTime) {
       ASSERT_EQ(followed.tracker.objects().size(), 1U) << "it has moved since it is followed";
       EXPECT_EQ(followed.tracker.objects()[0].dynamic, expected);
     }
+  }
+}
+
+TEST(ObjectTracker, AParkedCarThatDrivesOffIsFoundBeforeItIsFast) {
+  Followed followed;
+  for (int k = 0; k < 45; ++k) {
+    JudgedThings things(0.1 * k);
+    const double driving = std::max(0.0, 0.1 * (k - 20)), way = 0.5 * 1.75 * driving * driving;
+    addVehicle(things, 8.0 + way, 2.0, way < 0.2 ? Place::kSettled : Place::kUnobserved);
+    const std::size_t car = things.judged.points.size();
+    things.face({-10.0, 12.0, 0.0}, {60.0, 0.0, 0.0}, 6.0, Place::kSettled, 0.2);
+    const std::size_t moving = followed.step(things);
+    EXPECT_TRUE(moving == 0 || moving == car) << "scan " << k << ": " << moving;
+    EXPECT_EQ(moving, driving > 1.5 ? car : driving < 0.3 ? 0U : moving) << "driving for " << driving << " s";
   }
 }
 
