@@ -77,7 +77,7 @@ TEST(Pipeline, extrapolatesOnlyAfterTheTimeoutAndOnlyBounded) {
   rig.cloud(100.03);
   rig.run(100.4);
   EXPECT_TRUE(rig.labeled.empty());
-  rig.run(100.6);
+  rig.run(100.7);
   ASSERT_EQ(rig.stamps(), std::vector<double>{100.015});
   EXPECT_NEAR(rig.labeled[0].odom_from_base.translation().x(), 0.12, 1e-6);
   EXPECT_EQ(rig.dropped(DropReason::kNoOdometry), 1U);
@@ -87,7 +87,7 @@ TEST(Pipeline, extrapolatesOnlyAfterTheTimeoutAndOnlyBounded) {
 TEST(Pipeline, withoutOdometryEveryCloudIsDroppedWithAReason) {
   PipelineRig rig;
   for (int i = 0; i < 5; ++i) rig.cloud(100.0 + 0.1 * i);
-  rig.run(101.0);
+  rig.run(101.1);
   EXPECT_EQ(rig.dropped(DropReason::kNoOdometry), 5U);
   EXPECT_EQ(rig.drops.size(), 5U);
 }
@@ -141,11 +141,11 @@ TEST(Pipeline, missingTransformIsWaitedForThenDropped) {
   for (int i = 0; i < 20; ++i) rig.odometry(100.0 + 0.1 * i);
   rig.cloud(100.0);
   rig.cloud(100.5);
-  rig.run(100.5);
+  rig.run(100.7);
   EXPECT_EQ(rig.dropped(DropReason::kNoTransform), 1U);
   EXPECT_NE(rig.drops.at(0).find("'base_link' <- 'lidar'"), std::string::npos) << rig.drops[0];
   rig.tf.setTransform(test::transformAt(0.0, "base_link", "lidar", 0.0, 1.7), "test", true);
-  rig.run(100.6);
+  rig.run(100.8);
   EXPECT_EQ(rig.stamps(), std::vector<double>{100.5});
 }
 
@@ -158,7 +158,7 @@ TEST(Pipeline, odometryOfAnUnconnectedFrame) {
   };
   for (int i = 0; i < 10; ++i) rig.pipeline.addOdometry(wrong(100.0 + 0.1 * i));
   rig.cloud(100.2);
-  rig.run(100.8);
+  rig.run(100.9);
   EXPECT_EQ(rig.dropped(DropReason::kNoTransform), 1U);
   EXPECT_NE(rig.drops.at(0).find("somebody_else"), std::string::npos) << rig.drops[0];
   // The right frames come: the old track must not be mixed with the new one.
