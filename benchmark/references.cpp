@@ -11,7 +11,7 @@
 namespace donex::benchmark {
 namespace {
 
-constexpr int kRounds = 5;
+constexpr int kRounds = 20;
 
 /// The window's own place, and from sensor coordinates to it.
 struct Placed {

@@ -64,7 +64,8 @@ bool isPaper(const Config& config) {
 
 /// The grid of the paper's rule, and what it keeps of a scan.
 double paperBytes(const Config& config, double slots, double echoes) {
-  return config.method == Method::kDonex2d ? Grid2d::bytesFor(slots, echoes) : Grid3d::bytesFor(slots, echoes);
+  return config.method == Method::kDonex2d ? Grid2d::bytesFor(slots, echoes, config.threads)
+                                           : Grid3d::bytesFor(slots, echoes, config.threads);
 }
 
 }  // namespace

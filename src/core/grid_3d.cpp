@@ -8,15 +8,21 @@ namespace {
 constexpr std::uint64_t kAll = ~std::uint64_t{0};
 constexpr int kAhead = 12;  // bricks are asked of memory so many echoes before they are needed
 
-constexpr std::size_t kBlocksAtOnce = 16;  // of the index, by one thread
-
 std::uint64_t maskOf(std::uint32_t bit) { return std::uint64_t{1} << bit; }
 
 }  // namespace
 
 Grid3d::Grid3d(const Config& config)
-    : window_(config), layout_(window_.extent()), bricks_(layout_.slots() + 1), workers_(config.threads) {
+    : window_(config),
+      layout_(window_.extent()),
+      bricks_(layout_.slots() + 1),
+      workers_(config.threads),
+      parts_(static_cast<std::size_t>(config.threads)) {
   bricks_.back().remembered = kAll;  // what is outside is never new
+  for (std::size_t i = 1; i < parts_.size(); ++i) {
+    parts_[i].hit.resize(bricks_.size());
+    parts_[i].touched.reserve(layout_.slots() / kSlotsAUsedBrick);
+  }
   used_.reserve(layout_.slots() / kSlotsAUsedBrick);
   layout_.scrollTo(window_.minIndex());
 }
@@ -65,68 +71,80 @@ void Grid3d::resample(const Eigen::Isometry3d& odom_from_base) {
 Grid3d::Brick& Grid3d::brickAt(std::uint32_t slot, const Index3& in_window) {
   Brick& brick = bricks_[slot];
   const bool is_empty = (brick.remembered | brick.hit) == 0;
-  if (is_empty) used_.push_back({slot, (in_window + window_.minIndex()).unaryExpr([](int i) { return i & ~3; })});
+  if (is_empty) used_.push_back(usedAt(slot, in_window));
   return brick;
+}
+
+Grid3d::Used Grid3d::usedAt(std::uint32_t slot, const Index3& in_window) const {
+  return {slot, (in_window + window_.minIndex()).unaryExpr([](int i) { return i & ~3; })};
 }
 
 void Grid3d::take(const Scan& scan, EchoLabels& labels) {
   const Placement placement = window_.placementOf(scan);
-  rays_.begin(placement, scan.echoes);
-  const auto add = [&](std::size_t first, const EchoBlock& block) { rays_.add(first, block); };
-  if (workers_.threads() == 1) {
-    hit(scan, placement, labels, add);
-    rays_.finish();
-  } else {
-    // Hits and rays need nothing of each other but the echoes' places, which are quicker computed twice than handed
-    // over.
-    const std::size_t blocks = blocksOf(scan.echoes.size());
-    const auto some = [&](std::size_t i) {
-      forEachBlock(placement, scan.echoes, i * kBlocksAtOnce, std::min((i + 1) * kBlocksAtOnce, blocks), add);
-    };
-    const auto index = [&] {
-      workers_.each((blocks + kBlocksAtOnce - 1) / kBlocksAtOnce, some);
-      rays_.finish();
-    };
-    workers_.both([&] { hit(scan, placement, labels, [](std::size_t, const EchoBlock&) {}); }, index);
-  }
+  rays_.begin(placement, scan.echoes, parts_.size());
+  hit(scan, placement, labels,
+      [&](std::size_t part, std::size_t first, const EchoBlock& block) { rays_.add(part, first, block); });
+  rays_.finish(workers_);
   remember([&](std::uint64_t candidates, const Index3& corner) { return rays_.seenThrough(candidates, corner); });
 }
 
-void Grid3d::beginHits(std::size_t echoes, EchoLabels& labels) {
-  labels.resize(echoes);
-  hit_voxels_.clear();
-  no_echoes_.clear();
-  no_echoes_.reserve(echoes);
-  new_count_ = 0;
-  if (new_voxels_.size() <= echoes) new_voxels_.resize(echoes + 1);
-}
-
-void Grid3d::hit(std::size_t first, const EchoBlock& block, EchoLabels& labels) {
-  block.appendNoEchoes(first, no_echoes_);
-  const bool resamples = window_.compensation() == Compensation::kResample;
-  resamples ? hitInOrder<true>(first, block, labels) : hitInOrder<false>(first, block, labels);
-}
-
-template <bool keep_order>
-void Grid3d::hitInOrder(std::size_t first, const EchoBlock& block, EchoLabels& labels) {
+void Grid3d::hit(std::size_t part, std::size_t first, const EchoBlock& block, EchoLabels& labels) {
   BlockSlots at;
   layout_.locate(block, at);
+  const auto in_first_part = [&](int i) -> std::uint64_t& {
+    Brick& brick = bricks_[at.slot[i]];
+    if ((brick.remembered | brick.hit) == 0) brickAt(at.slot[i], block.voxel(i));
+    return brick.hit;
+  };
+  const auto in_other_part = [&, &own = parts_[part]](int i) -> std::uint64_t& {
+    std::uint64_t& hit = own.hit[at.slot[i]];
+    if (hit == 0) own.touched.push_back(usedAt(at.slot[i], block.voxel(i)));
+    return hit;
+  };
+  part == 0 ? hit(parts_[part], first, block, at, labels, in_first_part)
+            : hit(parts_[part], first, block, at, labels, in_other_part);
+}
+
+/// `hit_of(i)`: the part's own hits in the brick of the block's entry i.
+template <class HitOf>
+void Grid3d::hit(Part& part, std::size_t first, const EchoBlock& block, const BlockSlots& at, EchoLabels& labels,
+                 HitOf&& hit_of) {
+  const bool keeps_order = window_.compensation() == Compensation::kResample;
   std::uint8_t* dynamic = labels.dynamic.data() + first;
   int new_echoes[EchoBlock::kSize + 1], new_count = 0;
   for (int i = 0; i < block.count; ++i) {
     if (i + kAhead < EchoBlock::kSize) __builtin_prefetch(&bricks_[at.slot[i + kAhead]], 1);
-    Brick& brick = bricks_[at.slot[i]];
-    if ((brick.remembered | brick.hit) == 0) brickAt(at.slot[i], block.voxel(i));
     const std::uint64_t mask = maskOf(at.bit[i]);
-    const bool is_new = (brick.remembered & mask) == 0;
-    if (keep_order && block.inside[i] != 0 && (brick.hit & mask) == 0) hit_voxels_.push_back(block.voxel(i));
-    brick.hit |= mask;
+    const bool is_new = (bricks_[at.slot[i]].remembered & mask) == 0;
+    std::uint64_t& hit = hit_of(i);
+    if (keeps_order && block.inside[i] != 0 && (hit & mask) == 0) part.hit_voxels.push_back(block.voxel(i));
+    hit |= mask;
     dynamic[i] = is_new ? 1 : 0;
     new_echoes[new_count] = i;
     new_count += is_new ? 1 : 0;  // written in any case: no branch to guess
   }
   std::copy_n(block.observed, block.count, labels.observed.data() + first);
-  for (int i = 0; i < new_count; ++i) new_voxels_[new_count_++] = block.voxel(new_echoes[i]);
+  part.echoes.add(first, block, new_echoes, new_count);
+}
+
+void Grid3d::Part::begin(std::size_t most_echoes) {
+  echoes.begin(most_echoes);
+  hit_voxels.clear();
+}
+
+void Grid3d::takeOver(Part& part) {
+  std::vector<Index3>& in_order = parts_.front().hit_voxels;
+  for (const Index3& voxel : part.hit_voxels) {
+    const BrickBit at = layout_.locate(voxel);
+    if ((bricks_[at.slot].hit & maskOf(at.bit)) == 0) in_order.push_back(voxel);
+  }
+  for (const Used& touched : part.touched) {
+    Brick& brick = bricks_[touched.slot];
+    if ((brick.remembered | brick.hit) == 0) used_.push_back(touched);
+    brick.hit |= part.hit[touched.slot];
+    part.hit[touched.slot] = 0;
+  }
+  part.touched.clear();
 }
 
 /// A hit voxel starts anew from its centre; one in the shadow keeps the residual it carries.
@@ -142,7 +160,7 @@ void Grid3d::rememberContents() {
     return (bricks_[content.at.slot].remembered & maskOf(content.at.bit)) == 0;
   };
   contents_.erase(std::remove_if(contents_.begin(), contents_.end(), is_forgotten), contents_.end());
-  for (const Index3& voxel : hit_voxels_) {
+  for (const Index3& voxel : parts_.front().hit_voxels) {
     contents_.push_back({window_.odomFromGrid() * window_.indexToCenter(voxel), layout_.locate(voxel)});
   }
 }
@@ -155,10 +173,20 @@ void Grid3d::clearBricks() {
 void Grid3d::reset() {
   clearBricks();
   rays_.reset();
-  new_count_ = 0;
-  no_echoes_.clear();
   contents_.clear();
-  hit_voxels_.clear();
+  for (Part& part : parts_) part.echoes.clear();
+}
+
+std::vector<Index3> Grid3d::newVoxels() const {
+  std::vector<Index3> voxels;
+  for (const Part& part : parts_) part.echoes.appendNewVoxels(voxels);
+  return voxels;
+}
+
+std::vector<std::uint32_t> Grid3d::noEchoes() const {
+  std::vector<std::uint32_t> numbers;
+  for (const Part& part : parts_) part.echoes.appendNoEchoes(numbers);
+  return numbers;
 }
 
 std::vector<Index3> Grid3d::remembered() const {
@@ -171,15 +199,21 @@ std::vector<Index3> Grid3d::remembered() const {
   return voxels;
 }
 
-double Grid3d::bytesFor(double slots, double echoes) {
-  return slots * (sizeof(Brick) + static_cast<double>(sizeof(Used)) / kSlotsAUsedBrick) + RayIndex::bytesFor(echoes) +
-         echoes * (sizeof(Index3) + sizeof(std::uint32_t));
+double Grid3d::bytesFor(double slots, double echoes, int threads) {
+  constexpr double kUsedASlot = static_cast<double>(sizeof(Used)) / kSlotsAUsedBrick;
+  const double more_parts = threads - 1;
+  return slots * (sizeof(Brick) + kUsedASlot + more_parts * (sizeof(std::uint64_t) + kUsedASlot)) +
+         RayIndex::bytesFor(echoes, threads) + TakenEchoes::bytesFor(echoes);
 }
 
 std::size_t Grid3d::memoryBytes() const {
-  return bricks_.capacity() * sizeof(Brick) + used_.capacity() * sizeof(Used) + rays_.memoryBytes() +
-         contents_.capacity() * sizeof(Content) + no_echoes_.capacity() * sizeof(std::uint32_t) +
-         (hit_voxels_.capacity() + new_voxels_.capacity()) * sizeof(Index3);
+  std::size_t bytes = bricks_.capacity() * sizeof(Brick) + used_.capacity() * sizeof(Used) + rays_.memoryBytes() +
+                      contents_.capacity() * sizeof(Content);
+  for (const Part& part : parts_) {
+    bytes += part.echoes.memoryBytes() + part.hit_voxels.capacity() * sizeof(Index3) +
+             part.hit.capacity() * sizeof(std::uint64_t) + part.touched.capacity() * sizeof(Used);
+  }
+  return bytes;
 }
 
 }  // namespace donex

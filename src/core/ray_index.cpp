@@ -50,58 +50,71 @@ DONEX_WIDE_LOOPS void project(const Eigen::Vector3f& origin, float row_low, floa
 
 }  // namespace
 
-RayIndex::RayIndex() : bins_(kBins + 1) {}
-
 void RayIndex::Rays::resize(std::size_t rays) {
   across.resize(rays);
   up.resize(rays);
   depth.resize(rays);
 }
 
-void RayIndex::begin(const Placement& placement, const std::vector<Eigen::Vector3f>& echoes) {
+void RayIndex::begin(const Placement& placement, const std::vector<Eigen::Vector3f>& echoes, std::size_t parts) {
   placement_ = placement;
   echoes_ = &echoes;
   rows_ = next_rows_;
   const std::size_t padded = blocksOf(echoes.size()) * EchoBlock::kSize;
   by_echo_.resize(padded);
   bin_of_echo_.resize(padded);
+  bins_of_part_.resize(parts);
+  for (std::vector<Bin>& bins : bins_of_part_) bins.assign(kBins + 1, Bin{0, -1.0F});
 }
 
-void RayIndex::add(std::size_t first, const EchoBlock& block) {
+void RayIndex::add(std::size_t part, std::size_t first, const EchoBlock& block) {
   const Projected to{by_echo_.across.data() + first, by_echo_.up.data() + first, by_echo_.depth.data() + first,
                      bin_of_echo_.data() + first};
   project(placement_.origin, rows_.low, rows_.per_up, block, to);
+  Bin* bins = bins_of_part_[part].data();
+  for (int i = 0; i < EchoBlock::kSize; ++i) {
+    Bin& bin = bins[to.bin[i]];
+    ++bin.first;
+    bin.farthest = std::max(bin.farthest, to.depth[i]);
+  }
 }
 
-void RayIndex::finish() {
-  bins_.assign(kBins + 1, Bin{0, -1.0F});
-  const std::size_t rays = bin_of_echo_.size();
-  for (std::size_t i = 0; i < rays; ++i) {
-    Bin& bin = bins_[bin_of_echo_[i]];
-    ++bin.first;
-    bin.farthest = std::max(bin.farthest, by_echo_.depth[i]);
-  }
+void RayIndex::finish(const Workers& workers) {
   // Counts become ends; filling backwards turns the ends into starts.
   std::uint32_t end = 0;
-  for (Bin& bin : bins_) bin.first = end += bin.first;
-  rays_.resize(rays + kLanes);  // whole registers are read
-  echo_of_ray_.resize(rays);
-  for (std::size_t i = rays; i-- > 0;) {
-    const std::uint32_t ray = --bins_[bin_of_echo_[i]].first;
+  for (std::size_t i = 0; i <= kBins; ++i) {
+    for (std::vector<Bin>& bins : bins_of_part_) {
+      bins[i].first = end += bins[i].first;
+      bins_of_part_.front()[i].farthest = std::max(bins_of_part_.front()[i].farthest, bins[i].farthest);
+    }
+  }
+  rays_.resize(end + kLanes);  // whole registers are read
+  echo_of_ray_.resize(end);
+  const auto sort_part = [this](std::size_t part) { sortPart(part); };
+  workers.each(bins_of_part_.size(), sort_part);
+  next_rows_ = rowsOfScan();
+}
+
+void RayIndex::sortPart(std::size_t part) {
+  const std::size_t parts = bins_of_part_.size(), blocks = bin_of_echo_.size() / EchoBlock::kSize;
+  const std::size_t first = firstBlockOf(part, parts, blocks) * EchoBlock::kSize;
+  Bin* bins = bins_of_part_[part].data();
+  for (std::size_t i = firstBlockOf(part + 1, parts, blocks) * EchoBlock::kSize; i-- > first;) {
+    const std::uint32_t ray = --bins[bin_of_echo_[i]].first;
     rays_.across[ray] = by_echo_.across[i];
     rays_.up[ray] = by_echo_.up[i];
     rays_.depth[ray] = by_echo_.depth[i];
     echo_of_ray_[ray] = static_cast<std::uint32_t>(i);
   }
-  next_rows_ = rowsOfScan();
 }
 
 RayIndex::Rows RayIndex::rowsOfScan() const {
   float low = kSteepest, high = -kSteepest;
-  const std::size_t with_direction = bins_.back().first;
-  for (std::size_t ray = 0; ray < with_direction; ++ray) {
-    low = std::min(low, rays_.up[ray]);
-    high = std::max(high, rays_.up[ray]);
+  const std::size_t with_direction = bins_of_part_.front().back().first;
+  if (with_direction != 0) {
+    const Eigen::Map<const Eigen::ArrayXf> ups(rays_.up.data(), static_cast<Eigen::Index>(with_direction));
+    low = std::min(low, ups.minCoeff());
+    high = std::max(high, ups.maxCoeff());
   }
   low = std::max(low, -kSteepest);
   high = std::min(high, kSteepest);
@@ -109,15 +122,15 @@ RayIndex::Rows RayIndex::rowsOfScan() const {
   return low <= high ? Rows{low, kUp / std::max(high - low, kLeastSpan)} : Rows{};
 }
 
-double RayIndex::bytesFor(double echoes) {
+double RayIndex::bytesFor(double echoes, int parts) {
   constexpr double kAnEcho = 2 * (3 * sizeof(float) + sizeof(std::uint32_t));
-  return kAnEcho * echoes + static_cast<double>(kBins * sizeof(Bin));
+  return kAnEcho * echoes + static_cast<double>(parts) * static_cast<double>(kBins * sizeof(Bin));
 }
 
 std::size_t RayIndex::memoryBytes() const {
   const auto bytes = [](const Rays& rays) { return 3 * rays.across.capacity() * sizeof(float); };
   return bytes(by_echo_) + bytes(rays_) + (bin_of_echo_.capacity() + echo_of_ray_.capacity()) * sizeof(std::uint32_t) +
-         bins_.capacity() * sizeof(Bin);
+         bins_of_part_.size() * (kBins + 1) * sizeof(Bin);
 }
 
 }  // namespace donex

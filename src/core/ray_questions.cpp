@@ -56,6 +56,10 @@ int RayIndex::rowOf(float up) const {
   return static_cast<int>(std::min(std::max((up - rows_.low) * rows_.per_up, 0.0F), kUp - 1.0F));
 }
 
+inline const RayIndex::Bin* RayIndex::stripOf(int side, int column) const {
+  return bins_of_part_.front().data() + (side * kAcross + column) * kUp;
+}
+
 /// Margins and bins, from the bounds.
 inline void RayIndex::findBins(Shadow& shadow) const {
   shadow.across_margin = kMargin * (1.0F + std::max(std::abs(shadow.across_low), std::abs(shadow.across_high)));
@@ -117,7 +121,7 @@ inline RayIndex::Shadow RayIndex::shadowOf(const BrickAhead& brick, const Index3
 /// True where a bin of the box has a line of sight that is deep enough to touch it.
 inline bool RayIndex::anyRayReaches(const Shadow& shadow) const {
   for (int column = shadow.first_column; column <= shadow.last_column; ++column) {
-    const Bin* bin = bins_.data() + (shadow.side * kAcross + column) * kUp;
+    const Bin* bin = stripOf(shadow.side, column);
     for (int row = shadow.first_row; row <= shadow.last_row; ++row) {
       if (bin[row].farthest >= shadow.near_depth) return true;
     }
@@ -160,7 +164,7 @@ inline bool RayIndex::anyRayCrosses(const Shadow& shadow, const Index3& voxel) c
   const float across_high = shadow.across_high + shadow.across_margin;
   const float up_low = shadow.up_low - shadow.up_margin, up_high = shadow.up_high + shadow.up_margin;
   for (int column = shadow.first_column; column <= shadow.last_column; ++column) {
-    const Bin* bin = bins_.data() + (shadow.side * kAcross + column) * kUp;
+    const Bin* bin = stripOf(shadow.side, column);
     const std::uint32_t end = bin[shadow.last_row + 1].first;
     for (std::uint32_t first = bin[shadow.first_row].first; first < end; first += kLanes) {
       const Lanes across(&rays_.across[first]), up(&rays_.up[first]), depth(&rays_.depth[first]);

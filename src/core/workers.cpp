@@ -4,7 +4,6 @@
 #include <thread>
 
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
 
 namespace donex {
@@ -26,15 +25,6 @@ void Workers::each(std::size_t pieces, const std::function<void(std::size_t)>& w
     return;
   }
   arena_->arena.execute([&] { tbb::parallel_for(std::size_t{0}, pieces, work); });
-}
-
-void Workers::both(const std::function<void()>& one, const std::function<void()>& other) const {
-  if (arena_ == nullptr) {
-    one();
-    other();
-    return;
-  }
-  arena_->arena.execute([&] { tbb::parallel_invoke(one, other); });
 }
 
 }  // namespace donex

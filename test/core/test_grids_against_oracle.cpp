@@ -11,26 +11,28 @@
 namespace donex {
 namespace {
 
-Config smallGrid(Method method, Compensation compensation, double voxel_size) {
-  Config config = testing::paperConfig(method);
-  config.compensation = compensation;
-  config.voxel_size = voxel_size;
-  config.region = {-6.0, 9.0, -7.0, 5.0, -2.0, 3.0};
-  return config;
-}
-
 struct Case {
   unsigned seed;
   double voxel_size;
   Compensation compensation;
+  int threads;
 };
+
+Config smallGrid(Method method, const Case& c) {
+  Config config = testing::paperConfig(method);
+  config.compensation = c.compensation;
+  config.voxel_size = c.voxel_size;
+  config.threads = c.threads;
+  config.region = {-6.0, 9.0, -7.0, 5.0, -2.0, 3.0};
+  return config;
+}
 
 std::vector<Case> cases() {
   std::vector<Case> all;
   for (unsigned seed = 1; seed <= 20; ++seed) {
     for (const double size : {0.25, 0.3, 1.0}) {
       for (const Compensation compensation : {Compensation::kScroll, Compensation::kResample}) {
-        all.push_back({seed, size, compensation});
+        all.push_back({seed, size, compensation, 1 + static_cast<int>(seed % 3)});
       }
     }
   }
@@ -46,11 +48,11 @@ oracle::Voxels memoryOf(const Grid3d& grid) {
 }
 
 constexpr int kScans = 25;
-constexpr int kEchoes = 400;
+constexpr int kEchoes = 600;  // three blocks: one a thread at most
 
 TEST_P(AgainstOracle, Grid3d) {
   const Case& c = GetParam();
-  const Config config = smallGrid(Method::kDonex3d, c.compensation, c.voxel_size);
+  const Config config = smallGrid(Method::kDonex3d, c);
   testing::RandomScans scans(c.seed, c.voxel_size, 12.0F);
   oracle::Donex3d oracle(config);
   Grid3d grid(config);
@@ -72,7 +74,7 @@ TEST_P(AgainstOracle, Grid3d) {
 
 TEST_P(AgainstOracle, Detector3d) {
   const Case& c = GetParam();
-  const Config config = smallGrid(Method::kDonex3d, c.compensation, c.voxel_size);
+  const Config config = smallGrid(Method::kDonex3d, c);
   testing::RandomScans scans(c.seed + 1000, c.voxel_size, 12.0F);
   oracle::Donex3d oracle(config);
   const auto detector = makeDetector(config);
@@ -98,7 +100,7 @@ std::map<oracle::Donex2d::Cell, HeightRange> memoryOf(const Grid2d& grid) {
 
 TEST_P(AgainstOracle, Grid2d) {
   const Case& c = GetParam();
-  const Config config = smallGrid(Method::kDonex2d, c.compensation, c.voxel_size);
+  const Config config = smallGrid(Method::kDonex2d, c);
   testing::RandomScans scans(c.seed + 2000, c.voxel_size, 12.0F);
   oracle::Donex2d oracle(config);
   Grid2d grid(config);
@@ -123,7 +125,7 @@ TEST_P(AgainstOracle, Grid2d) {
 
 TEST_P(AgainstOracle, Detector2d) {
   const Case& c = GetParam();
-  const Config config = smallGrid(Method::kDonex2d, c.compensation, c.voxel_size);
+  const Config config = smallGrid(Method::kDonex2d, c);
   testing::RandomScans scans(c.seed + 3000, c.voxel_size, 12.0F);
   oracle::Donex2d oracle(config);
   const auto detector = makeDetector(config);
@@ -135,27 +137,32 @@ TEST_P(AgainstOracle, Detector2d) {
   }
 }
 
-TEST(Threads, DoNotChangeAnyLabel) {
-  Config config = smallGrid(Method::kDonex3d, Compensation::kScroll, 0.25);
-  const auto alone = makeDetector(config);
-  for (const int threads : {2, 3}) {
-    config.threads = threads;
-    const auto together = makeDetector(config);
-    alone->reset();
-    testing::RandomScans scans(7, config.voxel_size, 12.0F);
-    EchoLabels expected, labels;
-    std::size_t dynamic = 0;
-    for (int k = 0; k < kScans; ++k) {
-      const Scan scan = scans.next(40000);
-      alone->process(scan, expected);
-      together->process(scan, labels);
-      ASSERT_EQ(labels.dynamic, expected.dynamic) << threads << " threads, scan " << k;
-      ASSERT_EQ(labels.observed, expected.observed);
-      for (const std::uint8_t label : labels.dynamic) dynamic += label;
-    }
-    EXPECT_GT(dynamic, 1000U);
+class Threads : public ::testing::TestWithParam<std::tuple<Method, Compensation, int>> {};
+
+TEST_P(Threads, ChangeNothing) {
+  const auto [method, compensation, threads] = GetParam();
+  const auto alone = makeDetector(smallGrid(method, {7, 0.25, compensation, 1}));
+  const auto together = makeDetector(smallGrid(method, {7, 0.25, compensation, threads}));
+  testing::RandomScans scans(7, 0.25, 12.0F);
+  EchoLabels expected, labels;
+  std::size_t dynamic = 0;
+  for (int k = 0; k < kScans; ++k) {
+    const Scan scan = scans.next(20000);
+    alone->process(scan, expected);
+    together->process(scan, labels);
+    ASSERT_EQ(labels.dynamic, expected.dynamic) << "scan " << k;
+    ASSERT_EQ(labels.observed, expected.observed);
+    ASSERT_EQ(together->reasons(), alone->reasons());
+    ASSERT_EQ(together->dynamicCells(), alone->dynamicCells());
+    for (const std::uint8_t label : labels.dynamic) dynamic += label;
   }
+  EXPECT_GT(dynamic, 1000U);
 }
+
+INSTANTIATE_TEST_SUITE_P(Paper, Threads,
+                         ::testing::Combine(::testing::Values(Method::kDonex2d, Method::kDonex3d),
+                                            ::testing::Values(Compensation::kScroll, Compensation::kResample),
+                                            ::testing::Values(2, 3)));
 
 INSTANTIATE_TEST_SUITE_P(Random, AgainstOracle, ::testing::ValuesIn(cases()));
 

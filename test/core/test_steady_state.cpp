@@ -44,9 +44,11 @@ TEST_P(SteadyState, AllocatesNothingAScan) {
 }
 
 TEST_P(SteadyState, TakesWhatWasSaid) {
-  for (const double voxel_size : {0.4, 0.2, 0.1}) {
+  using Setting = std::pair<double, int>;
+  for (const auto& [voxel_size, threads] : {Setting{0.4, 1}, Setting{0.2, 1}, Setting{0.2, 2}, Setting{0.1, 1}}) {
     Config config = testing::paperConfig(GetParam());
     config.voxel_size = voxel_size;
+    config.threads = threads;
     const std::vector<Scan> scans = scansOfOneSize(voxel_size);
     EchoLabels labels;
     labels.resize(kEchoes);
@@ -54,8 +56,8 @@ TEST_P(SteadyState, TakesWhatWasSaid) {
     const auto detector = makeDetector(config);
     for (const Scan& scan : scans) detector->process(scan, labels);
     const auto taken = static_cast<double>(testing::liveBytes() - before);
-    EXPECT_NEAR(memoryBound(config, kEchoes), taken, 0.1 * taken) << voxel_size;
-    EXPECT_NEAR(static_cast<double>(detector->memoryBytes()), taken, 0.1 * taken) << voxel_size;
+    EXPECT_NEAR(memoryBound(config, kEchoes), taken, 0.1 * taken) << voxel_size << " m, " << threads;
+    EXPECT_NEAR(static_cast<double>(detector->memoryBytes()), taken, 0.1 * taken) << voxel_size << " m, " << threads;
   }
 }
 

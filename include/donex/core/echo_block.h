@@ -63,4 +63,9 @@ void forEachBlock(const Placement& placement, const std::vector<Eigen::Vector3f>
 
 inline std::size_t blocksOf(std::size_t echoes) { return (echoes + EchoBlock::kSize - 1) / EchoBlock::kSize; }
 
+/// Where part `part` of `parts` neighbouring parts of so many blocks begins; it ends where the next one begins.
+inline std::size_t firstBlockOf(std::size_t part, std::size_t parts, std::size_t blocks) {
+  return blocks * part / parts;
+}
+
 }  // namespace donex

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "donex/core/cell_layout.h"
+#include "donex/core/taken_echoes.h"
+#include "donex/core/workers.h"
 
 namespace donex {
 
@@ -26,24 +28,19 @@ class Grid2d {
 
   const GridWindow& window() const { return window_; }
   /// Numbers of the last scan's echoes that are none (non-finite, too far).
-  const std::vector<std::uint32_t>& noEchoes() const { return no_echoes_; }
+  std::vector<std::uint32_t> noEchoes() const;
   /// Voxels of the last scan's new echoes, in the window; a voxel may come more than once.
-  std::vector<Index3> newVoxels() const {
-    return {new_voxels_.begin(), new_voxels_.begin() + static_cast<std::ptrdiff_t>(new_count_)};
-  }
+  std::vector<Index3> newVoxels() const;
   /// Remembered range of a cell of the window, heights as the window's.
   HeightRange rangeAt(int x, int y) const;
   std::size_t memoryBytes() const;
   /// What memoryBytes will be, for scans of so many echoes [bytes]. Contents that are resampled come on top.
-  static double bytesFor(double slots, double echoes) {
-    return slots * sizeof(Cell) + echoes * (sizeof(Index3) + sizeof(std::uint32_t));
-  }
+  static double bytesFor(double slots, double echoes, int threads);
 
  private:
   struct Cell {
-    HeightRange range;
-    HeightRange before;      ///< the range that the scan which last hit the cell found
-    std::uint32_t scan = 0;  ///< that scan
+    HeightRange remembered;
+    HeightRange taken;  ///< of the scan that is judged just now; empty between scans
   };
   /// What a cell's range stands for while contents are resampled: the upright line of its centre.
   struct Content {
@@ -51,24 +48,35 @@ class Grid2d {
     std::uint32_t slot;
   };
 
+  /// What one thread finds in its part of a scan.
+  struct Part {
+    TakenEchoes echoes;
+    std::vector<std::uint32_t> hit;  ///< the first hit_count: slots that were hit, in the order of their first echoes
+    std::size_t hit_count = 0;
+    std::vector<HeightRange> taken;  ///< by slot, as Cell::taken; the first part uses that
+
+    void begin(std::size_t most_echoes);
+  };
+
   void resample(const Eigen::Isometry3d& odom_from_base);
   void place(const Content& content, const Eigen::Isometry3d& grid_from_odom);
-  template <bool keep_order>
-  void judge(std::size_t first, const EchoBlock& block, EchoLabels& labels);
+  template <class TakenOf>
+  void judge(Part& part, std::size_t first, const EchoBlock& block, EchoLabels& labels, TakenOf&& taken_of);
+  /// Adds what a part found to what the first one did.
+  void takeOver(Part& part);
+  /// A hit cell takes the scan's own range.
+  void rememberTaken();
   void rememberContents();
   Eigen::Vector3d toWindow(const Eigen::Vector3d& in_grid) const;
   Eigen::Vector3d fromWindow(const Eigen::Vector3d& in_window) const;
 
   GridWindow window_;
   CellLayout layout_;
-  std::uint32_t scan_ = 0;
-  std::vector<Cell> cells_;         ///< by slot; one more for the echoes outside
-  std::vector<Index3> new_voxels_;  ///< the first new_count_ of them
-  std::size_t new_count_ = 0;
-  std::vector<std::uint32_t> no_echoes_;
+  std::vector<Cell> cells_;  ///< by slot; one more for the echoes outside
+  Workers workers_;
+  std::vector<Part> parts_;                     ///< one a thread
   std::vector<Content> contents_;               ///< resample: one a cell with a range
   std::vector<std::uint32_t> content_of_cell_;  ///< resample: while ranges are moved
-  std::vector<std::uint32_t> hit_;              ///< resample: slots the scan hit, in the order of their first echoes
 };
 
 }  // namespace donex

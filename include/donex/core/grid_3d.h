@@ -8,6 +8,7 @@
 #include "donex/core/brick_layout.h"
 #include "donex/core/grid_window.h"
 #include "donex/core/ray_index.h"
+#include "donex/core/taken_echoes.h"
 #include "donex/core/workers.h"
 
 namespace donex {
@@ -28,19 +29,18 @@ class Grid3d {
 
   const GridWindow& window() const { return window_; }
   /// Numbers of the last scan's echoes that are none (non-finite, too far).
-  const std::vector<std::uint32_t>& noEchoes() const { return no_echoes_; }
+  std::vector<std::uint32_t> noEchoes() const;
   /// Voxels of the last scan's new echoes, in the window; a voxel may come more than once.
-  std::vector<Index3> newVoxels() const {
-    return {new_voxels_.begin(), new_voxels_.begin() + static_cast<std::ptrdiff_t>(new_count_)};
-  }
+  std::vector<Index3> newVoxels() const;
   /// Remembered voxels, in the window; order is not specified.
   std::vector<Index3> remembered() const;
   std::size_t memoryBytes() const;
   /// What memoryBytes will be, for scans of so many echoes [bytes]. Contents that are resampled come on top.
-  static double bytesFor(double slots, double echoes);
+  static double bytesFor(double slots, double echoes, int threads);
 
  protected:
-  /// The first half of take: marks H_k and judges. `also(first, block)` is shown the blocks, too.
+  /// The first half of take: marks H_k and judges. `also(part, first, block)` is shown the blocks, too; those of
+  /// different parts at the same time.
   template <class Also>
   void hit(const Scan& scan, const Placement& placement, EchoLabels& labels, Also&& also);
   /// The second: M_k = H_k u { v in M' \ H_k : v not seen through }. `seen(candidates, corner)` says which of a brick's
@@ -66,45 +66,63 @@ class Grid3d {
     BrickBit at;
   };
 
+  /// What one thread finds in its part of a scan.
+  struct Part {
+    TakenEchoes echoes;
+    std::vector<Index3> hit_voxels;  ///< resample: in the order of their first echoes
+    std::vector<std::uint64_t> hit;  ///< by slot, as Brick::hit; the first part uses that
+    std::vector<Used> touched;       ///< bricks with hits, each once; the first part uses used_
+
+    void begin(std::size_t most_echoes);
+  };
+
   void scroll(const Eigen::Isometry3d& odom_from_base);
   void resample(const Eigen::Isometry3d& odom_from_base);
-  void beginHits(std::size_t echoes, EchoLabels& labels);
-  void hit(std::size_t first, const EchoBlock& block, EchoLabels& labels);
-  template <bool keep_order>
-  void hitInOrder(std::size_t first, const EchoBlock& block, EchoLabels& labels);
+  void hit(std::size_t part, std::size_t first, const EchoBlock& block, EchoLabels& labels);
+  template <class HitOf>
+  void hit(Part& part, std::size_t first, const EchoBlock& block, const BlockSlots& at, EchoLabels& labels,
+           HitOf&& hit_of);
+  /// Adds what a part found to what the first one did.
+  void takeOver(Part& part);
   template <class Seen>
-  std::size_t rememberPart(std::size_t first, std::size_t last, Seen& seen);
+  std::size_t rememberSome(std::size_t first, std::size_t last, Seen& seen);
   void forgetHitContents();
   void rememberContents();
   Brick& brickAt(std::uint32_t slot, const Index3& in_window);
+  Used usedAt(std::uint32_t slot, const Index3& in_window) const;
   void clearBricks();
 
   GridWindow window_;
   BrickLayout layout_;
-  std::vector<Brick> bricks_;       ///< by slot; one more for the echoes outside
-  std::vector<Used> used_;          ///< each once
-  std::vector<std::size_t> parts_;  ///< how many of each part of used_ stay
+  std::vector<Brick> bricks_;      ///< by slot; one more for the echoes outside
+  std::vector<Used> used_;         ///< each once
+  std::vector<std::size_t> kept_;  ///< how many of each stretch of used_ stay
   Workers workers_;
+  std::vector<Part> parts_;  ///< one a thread
   RayIndex rays_;
-  std::vector<Index3> new_voxels_;  ///< the first new_count_ of them
-  std::size_t new_count_ = 0;
-  std::vector<std::uint32_t> no_echoes_;
-  std::vector<Content> contents_;   ///< resample: one a remembered voxel
-  std::vector<Index3> hit_voxels_;  ///< resample: in the order of their first echoes
+  std::vector<Content> contents_;  ///< resample: one a remembered voxel
 };
 
 template <class Also>
 void Grid3d::hit(const Scan& scan, const Placement& placement, EchoLabels& labels, Also&& also) {
-  beginHits(scan.echoes.size(), labels);
-  forEachBlock(placement, scan.echoes, 0, blocksOf(scan.echoes.size()), [&](std::size_t first, const EchoBlock& block) {
-    hit(first, block, labels);
-    also(first, block);
-  });
+  const std::size_t blocks = blocksOf(scan.echoes.size());
+  labels.resize(scan.echoes.size());
+  const auto hit_part = [&](std::size_t part) {
+    const std::size_t first = firstBlockOf(part, parts_.size(), blocks);
+    const std::size_t last = firstBlockOf(part + 1, parts_.size(), blocks);
+    parts_[part].begin((last - first) * EchoBlock::kSize);
+    forEachBlock(placement, scan.echoes, first, last, [&](std::size_t first_echo, const EchoBlock& block) {
+      hit(part, first_echo, block, labels);
+      also(part, first_echo, block);
+    });
+  };
+  workers_.each(parts_.size(), std::ref(hit_part));  // by reference: a copy of it would be allocated
+  for (std::size_t part = 1; part < parts_.size(); ++part) takeOver(parts_[part]);
 }
 
 /// Bricks `first` to `last` (not included) of used_; those that stay come first then, and are counted.
 template <class Seen>
-std::size_t Grid3d::rememberPart(std::size_t first, std::size_t last, Seen& seen) {
+std::size_t Grid3d::rememberSome(std::size_t first, std::size_t last, Seen& seen) {
   constexpr std::size_t kAhead = 12;  // bricks are asked of memory so long before they are needed
   std::size_t kept = first;
   for (std::size_t i = first; i < last; ++i) {
@@ -123,18 +141,16 @@ std::size_t Grid3d::rememberPart(std::size_t first, std::size_t last, Seen& seen
 template <class Seen>
 void Grid3d::remember(Seen&& seen) {
   forgetHitContents();
-  // More parts than threads: some parts are much more work than others.
-  const std::size_t parts = workers_.threads() == 1 ? 1 : 16 * static_cast<std::size_t>(workers_.threads());
-  const auto begin_of = [parts, all = used_.size()](std::size_t part) { return all * part / parts; };
-  parts_.resize(parts);
-  const auto remember_part = [&](std::size_t part) {
-    parts_[part] = rememberPart(begin_of(part), begin_of(part + 1), seen);
-  };
-  workers_.each(parts, std::ref(remember_part));  // by reference: a copy of it would be allocated
+  // More stretches than threads: some are much more work than others.
+  const std::size_t stretches = parts_.size() == 1 ? 1 : 16 * parts_.size();
+  const auto begin_of = [stretches, all = used_.size()](std::size_t i) { return all * i / stretches; };
+  kept_.resize(stretches);
+  const auto remember_some = [&](std::size_t i) { kept_[i] = rememberSome(begin_of(i), begin_of(i + 1), seen); };
+  workers_.each(stretches, std::ref(remember_some));
   auto end = used_.begin();
-  for (std::size_t part = 0; part < parts; ++part) {
-    const auto first = used_.begin() + static_cast<std::ptrdiff_t>(begin_of(part));
-    end = std::move(first, first + static_cast<std::ptrdiff_t>(parts_[part]), end);
+  for (std::size_t i = 0; i < stretches; ++i) {
+    const auto first = used_.begin() + static_cast<std::ptrdiff_t>(begin_of(i));
+    end = std::move(first, first + static_cast<std::ptrdiff_t>(kept_[i]), end);
   }
   used_.erase(end, used_.end());
   rememberContents();

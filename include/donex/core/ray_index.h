@@ -6,6 +6,7 @@
 
 #include "donex/core/echo_block.h"
 #include "donex/core/line_of_sight.h"
+#include "donex/core/workers.h"
 
 namespace donex {
 
@@ -18,14 +19,14 @@ namespace donex {
 /// the margin are put to LineOfSight. So every answer is that of the traversal.
 class RayIndex {
  public:
-  RayIndex();
-
-  /// Begins a scan: where it lies, and its echoes in the sensor's frame, which must stay until the last question.
-  void begin(const Placement& placement, const std::vector<Eigen::Vector3f>& echoes);
-  /// Takes a block of the scan, whose first echo is number `first`. Different blocks may be taken at the same time.
-  void add(std::size_t first, const EchoBlock& block);
+  /// Begins a scan: where it lies, and its echoes in the sensor's frame, which must stay until the last question. Its
+  /// blocks come in so many parts (firstBlockOf).
+  void begin(const Placement& placement, const std::vector<Eigen::Vector3f>& echoes, std::size_t parts);
+  /// Takes a block of a part; its first echo is number `first` of the scan. Blocks of different parts may be taken at
+  /// the same time.
+  void add(std::size_t part, std::size_t first, const EchoBlock& block);
   /// All blocks are there: sorts. Questions may be asked from now on, also at the same time.
-  void finish();
+  void finish(const Workers& workers);
 
   /// Those of `candidates` (bits of the 4 x 4 x 4 voxels from `corner` upwards, as BrickLayout numbers them) that some
   /// line of sight crosses before its own echo's voxel.
@@ -36,7 +37,7 @@ class RayIndex {
 
   std::size_t memoryBytes() const;
   /// What memoryBytes will be, for scans of so many echoes [bytes].
-  static double bytesFor(double echoes);
+  static double bytesFor(double echoes, int parts);
 
  private:
   static constexpr int kSides = 4;
@@ -72,7 +73,10 @@ class RayIndex {
   std::uint64_t seenThrough(std::uint64_t candidates, const BrickAhead& brick, const Index3& corner) const;
   Crossing judge(std::uint32_t ray, const Shadow& box) const;
   bool crosses(std::uint32_t ray, const Index3& voxel) const;
+  /// The bins of a strip of a side, from the lowest row upwards.
+  const Bin* stripOf(int side, int column) const;
   int rowOf(float up) const;
+  void sortPart(std::size_t part);
   Rows rowsOfScan() const;
 
   Placement placement_;
@@ -80,7 +84,8 @@ class RayIndex {
   Rows rows_, next_rows_;
   Rays by_echo_;
   std::vector<std::uint32_t> bin_of_echo_;
-  std::vector<Bin> bins_;
+  /// By part. While a part is taken, `first` counts its rays; in the end the first part's bins are those of the scan.
+  std::vector<std::vector<Bin>> bins_of_part_;
   Rays rays_;  ///< by bin
   std::vector<std::uint32_t> echo_of_ray_;
 };

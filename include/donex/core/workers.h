@@ -19,9 +19,6 @@ class Workers {
   /// work(0) to work(pieces - 1), in any order, at the same time.
   void each(std::size_t pieces, const std::function<void(std::size_t)>& work) const;
 
-  /// Both, at the same time; either may call `each`.
-  void both(const std::function<void()>& one, const std::function<void()>& other) const;
-
  private:
   struct Arena;
 

@@ -12,14 +12,15 @@ namespace donex {
 /// between two pixels' echoes would have seen.
 class ZBufferGrid : public Grid3d {
  public:
-  explicit ZBufferGrid(const Config& config) : Grid3d(config) {}
+  /// Works on one thread.
+  explicit ZBufferGrid(const Config& config) : Grid3d(onOneThread(config)) {}
 
   /// As Grid3d::take, but forgets what is remembered, not hit now, and nearer than the surface of its direction by more
   /// than the half diagonal of a voxel.
   void take(const Scan& scan, EchoLabels& labels) {
     const Placement placement = window().placementOf(scan);
     image_.clear();
-    hit(scan, placement, labels, [&](std::size_t, const EchoBlock& block) {
+    hit(scan, placement, labels, [&](std::size_t, std::size_t, const EchoBlock& block) {
       for (int i = 0; i < block.count; ++i) {
         image_.add(Eigen::Vector3f(block.x[i], block.y[i], block.z[i]) - placement.origin);
       }
@@ -37,6 +38,10 @@ class ZBufferGrid : public Grid3d {
   std::size_t memoryBytes() const { return Grid3d::memoryBytes() + image_.memoryBytes(); }
 
  private:
+  static Config onOneThread(Config config) {
+    config.threads = 1;
+    return config;
+  }
   bool seesThrough(const Index3& voxel, const Eigen::Vector3f& origin) const {
     const Eigen::Vector3f center = voxel.cast<float>() + Eigen::Vector3f::Constant(0.5F) - origin;
     return image_.rangeTowards(center) > center.norm() + kHalfDiagonal;
