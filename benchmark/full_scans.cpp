@@ -20,7 +20,7 @@ void run(::benchmark::State& state, const std::string& scene, Method method) {
 void registerFullScans() {
   for (const char* scene : {"street", "intersection"}) {
     for (const Method method : {Method::kDonex2d, Method::kDonex3d}) {
-      const std::string name = "default/" + namesOf(method)[static_cast<std::size_t>(method)] + "/" + scene;
+      const std::string name = "default/" + nameOf(method) + "/" + scene;
       ::benchmark::RegisterBenchmark(name.c_str(), run, std::string(scene), method)
           ->UseManualTime()
           ->Unit(::benchmark::kMillisecond)

@@ -8,13 +8,12 @@
 #include "donex/core/brick_layout.h"
 #include "references.h"
 #include "register.h"
-#include "support/configs.h"
 
 namespace donex::benchmark {
 namespace {
 
 Config configOf(double voxel_size) {
-  Config config = testing::paperConfig(Method::kDonex3d);
+  Config config = paperConfig(Method::kDonex3d);
   config.voxel_size = voxel_size;
   return config;
 }

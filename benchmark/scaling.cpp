@@ -3,7 +3,6 @@
 
 #include "references.h"
 #include "register.h"
-#include "support/configs.h"
 
 namespace donex::benchmark {
 namespace {
@@ -17,7 +16,7 @@ struct Setting {
 };
 
 Config configOf(const Setting& setting) {
-  Config config = testing::paperConfig(setting.method);
+  Config config = paperConfig(setting.method);
   config.voxel_size = setting.voxel_size;
   config.region = {-setting.reach, setting.reach, -setting.reach, setting.reach, -4.0, 6.0};
   config.threads = setting.threads;
@@ -32,7 +31,7 @@ void run(::benchmark::State& state, const Setting& setting) {
 }
 
 void add(const std::string& group, const std::string& value, const Setting& setting) {
-  const std::string name = namesOf(setting.method)[static_cast<std::size_t>(setting.method)];
+  const std::string name = nameOf(setting.method);
   ::benchmark::RegisterBenchmark((group + "/" + name + "/" + value).c_str(), run, setting)
       ->UseManualTime()
       ->Unit(::benchmark::kMillisecond);

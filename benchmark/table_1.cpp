@@ -3,7 +3,6 @@
 
 #include "references.h"
 #include "register.h"
-#include "support/configs.h"
 
 namespace donex::benchmark {
 namespace {
@@ -11,7 +10,7 @@ namespace {
 constexpr std::size_t kEchoes = 160000;
 
 Config tableConfig(Method method, double voxel_size) {
-  Config config = testing::paperConfig(method);
+  Config config = paperConfig(method);
   config.voxel_size = voxel_size;
   config.region = {0.0, 75.0, -25.0, 25.0, -4.0, 6.0};
   return config;
@@ -31,7 +30,7 @@ void run(::benchmark::State& state, Method method, double voxel_size) {
 void registerTable1() {
   for (const Method method : {Method::kDonex2d, Method::kDonex3d}) {
     for (const char* voxel_size : {"0.3", "0.15", "0.1"}) {
-      const std::string name = namesOf(method)[static_cast<std::size_t>(method)];
+      const std::string name = nameOf(method);
       ::benchmark::RegisterBenchmark(("table_1/" + name + "/" + voxel_size).c_str(), run, method, std::stod(voxel_size))
           ->UseManualTime()
           ->Unit(::benchmark::kMillisecond);

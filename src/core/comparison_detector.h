@@ -36,7 +36,7 @@ class ComparisonDetector : public Interface {
   }
 
  protected:
-  explicit ComparisonDetector(const Config& config) : window_(scrolling(config)) {}
+  explicit ComparisonDetector(const Config& config) : window_(config.scrolling()) {}
 
   /// Marks what is dynamic and what was observed; labels come all 0.
   virtual void judge(const Scan& scan, const GridScan& in_grid, EchoLabels& labels) = 0;
@@ -48,11 +48,6 @@ class ComparisonDetector : public Interface {
   StreamGuard& guard() { return guard_; }
 
  private:
-  static Config scrolling(Config config) {
-    config.compensation = Compensation::kScroll;
-    return config;
-  }
-
   GridWindow window_;
   StreamGuard guard_;
   GridScan in_grid_;

@@ -19,9 +19,8 @@ void requireSound(const Config& config) {
 
 std::unique_ptr<Detector> makeDetector(const Config& config) {
   requireSound(config);
-  const bool is_paper = !config.evidence.any() && !config.objects.enabled;
   switch (config.method) {
-    case Method::kDonex2d: return is_paper ? makePaperDetector2d(config) : makeEvidenceDetector2d(config);
+    case Method::kDonex2d: return config.isPaper() ? makePaperDetector2d(config) : makeEvidenceDetector2d(config);
     case Method::kDonex3dZBuffer: return makeZBufferDetector(config);
     case Method::kMotionVoxelGrid: return makeMotionVoxelGridDetector(config);
     case Method::kRayTracing: return makeRayTracingDetector(config);
@@ -32,7 +31,7 @@ std::unique_ptr<Detector> makeDetector(const Config& config) {
           "donex_bag, or a sequence to donex_sequence or donex_map");
     case Method::kDonex3d: break;
   }
-  return is_paper ? makePaperDetector3d(config) : makeEvidenceDetector3d(config);
+  return config.isPaper() ? makePaperDetector3d(config) : makeEvidenceDetector3d(config);
 }
 
 std::unique_ptr<WholeDriveDetector> makeWholeDriveDetector(const Config& config) {

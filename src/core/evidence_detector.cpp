@@ -24,19 +24,13 @@ SightHistory historyOf(const EvidenceConfig& e) {
                       {e.careful_sight, std::tan(e.sight_gap * kRadians)});
 }
 
-/// Births are times, which resampling would blur: with evidence the grid always scrolls.
-Config scrolling(Config config) {
-  config.compensation = Compensation::kScroll;
-  return config;
-}
-
 /// What both grids share; `Newness` is what differs between them.
 template <class Newness>
 class EvidenceDetector : public Detector {
  public:
   explicit EvidenceDetector(const Config& config)
       : config_(config),
-        newness_(scrolling(config)),
+        newness_(config.scrolling()),  // births are times, which resampling would blur
         clock_(config.evidence.birth_age ? config.evidence.birth_window : 0.0),
         history_(historyOf(config.evidence)),
         ground_(reachOf(config.region)),

@@ -36,9 +36,9 @@ void ObjectTracker::update(const JudgedScan& scan, const SightHistory& history, 
     Candidate& candidate = candidates[i];
     if (isTooLong(candidate)) continue;
     Track& track = trackOf(i, scan.stamp, candidate);
-    weigh(track, evidence, scan.stamp, candidate);
+    if (config_.motion) weigh(track, evidence, scan.stamp, candidate);
     decide(track, scan.stamp, candidate);
-    leaveTrace(track, scan, candidate);
+    if (config_.motion) leaveTrace(track, scan, candidate);
     if (track.ever_dynamic) describe(track, scan, candidate);
   }
   complete(wholes, candidates);

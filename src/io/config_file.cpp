@@ -10,6 +10,8 @@
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
+#include "donex/core/parameter_list.h"
+
 namespace donex {
 namespace {
 

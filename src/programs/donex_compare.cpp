@@ -30,13 +30,9 @@ struct Contender {
 };
 
 Config configOf(Method method, bool is_paper) {
-  Config config;
+  Config config = is_paper ? paperConfig(method) : Config();
   config.method = method;
-  if (!is_paper) return config;
-  config.compensation = Compensation::kResample;  // as config/paper_3d.yaml has it
-  EvidenceConfig& e = config.evidence;
-  e.free_evidence = e.careful_sight = e.birth_age = e.neighbourhood = e.ground = false;
-  config.objects.enabled = false;
+  if (is_paper) config.compensation = Compensation::kResample;  // as config/paper_3d.yaml has it
   return config;
 }
 

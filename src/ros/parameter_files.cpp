@@ -7,6 +7,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "donex/core/parameter_list.h"
+
 namespace donex {
 namespace {
 

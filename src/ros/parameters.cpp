@@ -8,6 +8,7 @@
 
 #include <dynamic_reconfigure/config_tools.h>
 
+#include "donex/core/parameter_list.h"
 #include "donex/ros/parameter_files.h"
 
 namespace donex {

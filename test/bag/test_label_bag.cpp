@@ -35,20 +35,13 @@ std::vector<std::vector<std::uint8_t>> labelsOfSequence(const fs::path& director
   return all;
 }
 
-Config paperConfig() {
-  Config config;
-  config.evidence.free_evidence = config.evidence.careful_sight = config.evidence.neighbourhood = false;
-  config.evidence.birth_age = config.evidence.ground = config.objects.enabled = false;
-  return config;
-}
-
 TEST(LabelBag, GivesTheLabelsOfTheSequence) {
   for (const double rate : {10.0, 100.0}) {
     const TemporaryDirectory directory;
     const fs::path in = directory.path() / "in.bag", out = directory.path() / "out.bag";
     test::writeDriveBag(directory.path() / "drive", in, 15, {{rate, 0.0}, rosbag::compression::Uncompressed});
     LabelBagOptions options;
-    options.config = paperConfig();
+    options.config = paperConfig(Method::kDonex3d);
     const auto summary = test::label(in, out, options);
     const auto expected = labelsOfSequence(directory.path() / "drive", options.config);
     const auto clouds = test::readTopic<PointCloud2>(out, kLabeled);
@@ -142,7 +135,7 @@ TEST(LabelBag, MovesBySequenceOfTfAndNeedsNoOdometryThen) {
   const fs::path in = directory.path() / "in.bag", out = directory.path() / "out.bag";
   test::writeDriveBag(directory.path() / "drive", in, 6);
   LabelBagOptions options;
-  options.config = paperConfig();
+  options.config = paperConfig(Method::kDonex3d);
   options.config.motion.source = OdometrySource::kTf;
   const auto summary = test::label(in, out, options);
   EXPECT_TRUE(summary.odom.empty());
@@ -228,7 +221,7 @@ TEST(LabelBag, PartsOfARecordingAreLabelledAsOne) {
   const fs::path in = directory.path() / "in.bag", whole = directory.path() / "whole.bag";
   test::writeDriveBag(directory.path() / "drive", in, 15);
   LabelBagOptions options;
-  options.config = paperConfig();
+  options.config = paperConfig(Method::kDonex3d);
   test::label(in, whole, options);
   const BagParts parts = split(in, directory.path(), {50.45, 51.05});
   fs::create_directory(directory.path() / "out");

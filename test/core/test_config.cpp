@@ -8,7 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "donex/core/detector.h"
-#include "support/configs.h"
+#include "donex/core/memory_bound.h"
+#include "donex/core/parameter_list.h"
 
 namespace donex {
 namespace {
@@ -44,7 +45,7 @@ TEST(Config, RegionNarrowerThanAVoxelIsRefused) {
 
 TEST(Config, AGridBeyondTheLimitIsRefusedBeforeItIsAllocated) {
   for (const Method method : {Method::kDonex3d, Method::kDonex2d}) {
-    Config config = testing::paperConfig(method);
+    Config config = paperConfig(method);
     config.voxel_size = 0.02;
     config.region = {-500, 500, -500, 500, -100, 100};
     EXPECT_TRUE(names(config.faults(), "memory_limit"));
@@ -54,11 +55,28 @@ TEST(Config, AGridBeyondTheLimitIsRefusedBeforeItIsAllocated) {
 
 TEST(Config, WhatTheGridTakesIsWhatWasSaid) {
   for (const Method method : {Method::kDonex3d, Method::kDonex2d}) {
-    Config config = testing::paperConfig(method);
+    Config config = paperConfig(method);
     config.voxel_size = 0.1;
     const auto detector = makeDetector(config);
-    EXPECT_NEAR(static_cast<double>(detector->memoryBytes()), config.gridBytes(), 0.1 * config.gridBytes());
+    EXPECT_NEAR(static_cast<double>(detector->memoryBytes()), gridBytes(config), 0.1 * gridBytes(config));
   }
+}
+
+TEST(Config, ThePapersRuleIsWhatItSaysAndOneStepMoreIsEvidence) {
+  for (const Method method : {Method::kDonex3d, Method::kDonex2d}) {
+    Config config = paperConfig(method);
+    EXPECT_EQ(config.method, method);
+    EXPECT_TRUE(config.isPaper());
+    EXPECT_FALSE(config.hasEvidence());
+    config.objects.enabled = true;
+    EXPECT_TRUE(config.hasEvidence());
+    EXPECT_FALSE(config.isPaper());
+  }
+  Config other;
+  other.method = Method::kRayTracing;
+  EXPECT_FALSE(other.isPaper() || other.hasEvidence()) << "a method of its own";
+  other.method = Method::kDonex3dZBuffer;
+  EXPECT_TRUE(other.isPaper()) << "whatever the switches say";
 }
 
 struct Names {

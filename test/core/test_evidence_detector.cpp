@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "labelled_drives.h"
-#include "support/configs.h"
 #include "support/oracle.h"
 
 namespace donex {
@@ -194,7 +193,7 @@ INSTANTIATE_TEST_SUITE_P(Grids, BothGrids, ::testing::Values(Method::kDonex3d, M
 TEST(WithoutEvidence, ADriveIsLabelledAsThePaperSays) {
   const std::vector<TrueScan> drive = simulatedDrive("street", 16, 6, 8);
   for (const Method method : {Method::kDonex3d, Method::kDonex2d}) {
-    Config config = testing::paperConfig(method);
+    Config config = paperConfig(method);
     config.voxel_size = 0.5;
     config.region = {-15.0, 15.0, -15.0, 15.0, -3.0, 4.0};
     const auto labels = labelsOf(config, drive);

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "donex/core/detector.h"
-#include "support/configs.h"
 #include "support/simulated_drive.h"
 
 namespace donex {
@@ -28,7 +27,7 @@ bool holds(const std::vector<Eigen::Vector3f>& centers, const Eigen::Vector3f& p
 }
 
 TEST(Explanation, paperCells) {
-  Config config = testing::paperConfig(Method::kDonex3d);
+  Config config = paperConfig(Method::kDonex3d);
   const auto detector = makeDetector(config);
   const Eigen::Vector3f ahead(5.1F, 0.1F, 0.1F), aside(0.1F, 5.1F, 0.1F), behind(10.1F, 0.2F, 0.2F);
   EchoLabels labels;

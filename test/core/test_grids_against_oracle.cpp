@@ -4,7 +4,6 @@
 #include "donex/core/detector.h"
 #include "donex/core/grid_2d.h"
 #include "donex/core/grid_3d.h"
-#include "support/configs.h"
 #include "support/oracle.h"
 #include "support/random_scans.h"
 
@@ -19,7 +18,7 @@ struct Case {
 };
 
 Config smallGrid(Method method, const Case& c) {
-  Config config = testing::paperConfig(method);
+  Config config = paperConfig(method);
   config.compensation = c.compensation;
   config.voxel_size = c.voxel_size;
   config.threads = c.threads;

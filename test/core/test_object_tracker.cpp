@@ -101,6 +101,19 @@ TEST(ObjectTracker, AVehicleAheadAtTheSameSpeedIsFoundByItsRear) {
   EXPECT_NEAR(followed.tracker.objects()[0].velocity.x(), 12.0, 0.2);
 }
 
+TEST(ObjectTracker, WithoutMotionOnlyNewEchoesTell) {
+  ObjectConfig config;
+  config.motion = false;
+  for (const Place place : {Place::kUnobserved, Place::kNew}) {
+    Followed followed(config);
+    for (int k = 0; k < 30; ++k) {
+      JudgedThings things(0.1 * k, 1.2 * k);
+      things.face({1.2 * k + 12.0, -0.9, 0.3}, {0.0, 1.8, 0.0}, 1.2, place, 0.05);
+      EXPECT_EQ(followed.step(things), place == Place::kNew ? things.judged.points.size() : 0U) << "scan " << k;
+    }
+  }
+}
+
 TEST(ObjectTracker, AFewNewEchoesAndAPlaceThatIsLeftAreEnough) {
   // The ends of a long vehicle that passes by: little is new, the former end is seen free.
   Followed followed;

@@ -7,7 +7,6 @@
 #include "donex/core/detector.h"
 #include "donex/core/range_image.h"
 #include "donex/core/z_buffer_grid.h"
-#include "support/configs.h"
 
 namespace donex {
 namespace {
@@ -54,7 +53,7 @@ class ZBuffer : public ::testing::Test {
   ZBuffer() : detector_(makeDetector(config())) {}
 
   static Config config() {
-    Config config = testing::paperConfig(Method::kDonex3dZBuffer);
+    Config config = paperConfig(Method::kDonex3dZBuffer);
     config.voxel_size = 1.0;
     config.region = {-20.0, 20.0, -20.0, 20.0, -4.0, 4.0};
     return config;

@@ -3,7 +3,6 @@
 
 #include "donex/core/detector.h"
 #include "donex/core/memory_bound.h"
-#include "support/configs.h"
 #include "support/counted_allocations.h"
 #include "support/random_scans.h"
 
@@ -28,7 +27,7 @@ std::vector<Scan> scansOfOneSize(double voxel_size) {
 class SteadyState : public ::testing::TestWithParam<Method> {};
 
 TEST_P(SteadyState, AllocatesNothingAScan) {
-  const Config config = testing::paperConfig(GetParam());
+  const Config config = paperConfig(GetParam());
   const std::vector<Scan> scans = scansOfOneSize(config.voxel_size);
   const auto detector = makeDetector(config);
   EchoLabels labels;
@@ -46,7 +45,7 @@ TEST_P(SteadyState, AllocatesNothingAScan) {
 TEST_P(SteadyState, TakesWhatWasSaid) {
   using Setting = std::pair<double, int>;
   for (const auto& [voxel_size, threads] : {Setting{0.4, 1}, Setting{0.2, 1}, Setting{0.2, 2}, Setting{0.1, 1}}) {
-    Config config = testing::paperConfig(GetParam());
+    Config config = paperConfig(GetParam());
     config.voxel_size = voxel_size;
     config.threads = threads;
     const std::vector<Scan> scans = scansOfOneSize(voxel_size);

@@ -7,7 +7,6 @@
 
 #include "donex/core/stream_guard.h"
 #include "labelled_drives.h"
-#include "support/configs.h"
 
 namespace donex {
 namespace {
@@ -21,7 +20,7 @@ using testing::TrueScan;
 class Refusals : public ::testing::TestWithParam<std::pair<Method, bool>> {
  protected:
   Config config() const {
-    return GetParam().second ? testing::paperConfig(GetParam().first) : configOf(GetParam().first);
+    return GetParam().second ? paperConfig(GetParam().first) : configOf(GetParam().first);
   }
 };
 

@@ -4,7 +4,6 @@
 #include "donex/core/detector.h"
 #include "donex/core/grid_2d.h"
 #include "donex/core/grid_3d.h"
-#include "support/configs.h"
 
 namespace donex {
 namespace {
@@ -12,7 +11,7 @@ namespace {
 constexpr int kShifts = 1000;
 
 Config grid(Method method, Compensation compensation) {
-  Config config = testing::paperConfig(method);
+  Config config = paperConfig(method);
   config.compensation = compensation;
   config.voxel_size = 0.5;
   config.region = {-40, 40, -40, 40, -6, 6};

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "donex/core/parameter_list.h"
 #include "donex/io/config_file.h"
 #include "support/temporary_directory.h"
 

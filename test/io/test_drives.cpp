@@ -9,7 +9,6 @@
 #include "donex/io/evaluation.h"
 #include "donex/io/sequence.h"
 #include "donex/simulation/simulator.h"
-#include "support/configs.h"
 #include "support/oracle.h"
 
 namespace donex {
@@ -59,7 +58,7 @@ Scan thinned(const Scan& scan, std::size_t step) {
 template <class Oracle>
 void expectOracleLabels(Method method, const std::vector<LabelledScan>& scans) {
   for (const Compensation compensation : {Compensation::kScroll, Compensation::kResample}) {
-    Config config = testing::paperConfig(method);
+    Config config = paperConfig(method);
     config.compensation = compensation;
     config.voxel_size = 0.4;
     Oracle oracle(config);

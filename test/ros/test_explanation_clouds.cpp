@@ -5,7 +5,6 @@
 
 #include "donex/ros/explanation_clouds.h"
 #include "ros/pipeline_rig.h"
-#include "support/configs.h"
 
 namespace donex {
 namespace {
@@ -30,7 +29,7 @@ TEST(ExplanationClouds, movingIsMagentaAndReasonsAreTold) {
   events.dropped = [](DropReason, const std::string& text) { ADD_FAILURE() << text; };
   events.refused = [](OdometryRefusal, const std::string&) {};
   events.forgotten = events.strange_times = [](const std::string&) {};
-  Config config = testing::paperConfig(Method::kDonex3d);
+  Config config = paperConfig(Method::kDonex3d);
   config.motion.source = OdometrySource::kNone;
   Pipeline pipeline(config, tf, events);
   pipeline.addCloud(test::plainCloud({{5.0F, 0.0F, 0.5F}}, 100.0), 100.0);

@@ -8,6 +8,7 @@
 #include <donex/DonexConfig.h>
 #include <gtest/gtest.h>
 
+#include "donex/core/parameter_list.h"
 #include "donex/io/config_file.h"
 #include "donex/ros/parameter_files.h"
 #include "donex/ros/parameters.h"
@@ -68,7 +69,7 @@ TEST(ParameterFiles, defaultYamlReadsBackAsTheDefaults) {
 TEST(ParameterFiles, paperFilesSwitchEveryStepOff) {
   for (const std::string name : {"paper_3d", "paper_2d"}) {
     const Config config = readConfigFile(kPackage + "/config/" + name + ".yaml");
-    EXPECT_FALSE(config.evidence.any() || config.objects.enabled) << name;
+    EXPECT_TRUE(config.isPaper()) << name;
     EXPECT_EQ(namesOf(config.method)[static_cast<std::size_t>(config.method)], "donex_" + name.substr(6));
   }
 }

@@ -11,7 +11,8 @@
 namespace donex {
 
 /// Follows candidates from scan to scan. An object moves
-///  - where enough of its echoes are new: its front comes into space that was free;
+///  - where enough of its echoes are new: its front comes into space that was free.
+/// With ObjectConfig::motion also
 ///  - where its former place is now seen free: its rear has receded. This finds a vehicle ahead at the
 ///    ego vehicle's own speed, whose front nobody sees and whose rear only ever enters its own shadow;
 ///  - where a little of both is true: the ends of a long vehicle that passes by;
