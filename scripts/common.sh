@@ -26,7 +26,8 @@ export XAUTHORITY=${XAUTHORITY:-${HOME:-}/.Xauthority}
 export HOME=$build/home ROS_HOME=$build/ros_home
 export XDG_RUNTIME_DIR=${XDG_RUNTIME_DIR:-$build/home/runtime}
 mkdir -p -m 700 "$HOME" "$build/home/runtime"
-export CCACHE_DIR=${CCACHE_DIR:-$build/ccache} CCACHE_NOHASHDIR=1 CCACHE_BASEDIR=$repository CCACHE_MAXSIZE=1G
+[ -n "${CCACHE_DIR:-}" ] || export CCACHE_DIR=$build/ccache CCACHE_MAXSIZE=1G
+export CCACHE_NOHASHDIR=1 CCACHE_BASEDIR=$repository
 # A node's messages as they come, not when a buffer is full.
 export ROSCONSOLE_STDOUT_LINE_BUFFERED=1 PYTHONUNBUFFERED=1
 
