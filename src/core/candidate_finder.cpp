@@ -1,14 +1,17 @@
 #include "donex/core/candidate_finder.h"
 
 #include <algorithm>
+#include <iterator>
+#include <limits>
 
 namespace donex {
 namespace {
 
 constexpr double kAcrossAngle = 0.01;          // [rad] wider than any sensor's step in azimuth
+constexpr double kUpAngle = 0.015;             // [rad]
 constexpr double kRim = 0.3, kTightRim = 0.1;  // [m] around a thing
 constexpr std::size_t kWorthCutting = 10;      // echoes
-constexpr double kUpAngle = 0.015;             // [rad]
+constexpr std::size_t kTooSmall = std::numeric_limits<std::size_t>::max();
 
 Clusters::Settings clustersOf(const ObjectConfig& config, double cell) {
   return {cell, config.height, kAcrossAngle, kUpAngle};
@@ -21,8 +24,7 @@ CandidateFinder::CandidateFinder(double reach, const ObjectConfig& config)
       clusters_(reach, clustersOf(config, config.cell)),
       fine_clusters_(reach, clustersOf(config, 0.5 * config.cell)) {}
 
-void CandidateFinder::find(const JudgedScan& scan, const std::vector<Expected>& expected,
-                           std::vector<Candidate>& candidates) {
+void CandidateFinder::find(const JudgedScan& scan, const std::vector<Expected>& expected, Candidates& candidates) {
   candidates.clear();
   clusters_.connect(scan.sensor, scan.points, scan.heights, scan.standing);
   append(scan, candidates);
@@ -40,45 +42,52 @@ void CandidateFinder::find(const JudgedScan& scan, const std::vector<Expected>& 
       if (may_move) standing_[echo] = Standing::kIn;
     }
   }
-  const auto whole_end = std::remove_if(candidates.begin(), candidates.end(), is_mixed);
-  if (whole_end == candidates.end()) return;
-  candidates.erase(whole_end, candidates.end());
+  if (!candidates.removeIf(is_mixed)) return;
   clusters_.connect(scan.sensor, scan.points, scan.heights, standing_);
   append(scan, candidates);
 }
 
-void CandidateFinder::append(const JudgedScan& scan, std::vector<Candidate>& candidates) const {
+void CandidateFinder::append(const JudgedScan& scan, Candidates& candidates) {
+  echoes_of_.assign(static_cast<std::size_t>(clusters_.count()), 0);
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    if (clusters_.of(i) != Clusters::kNone) ++echoes_of_[static_cast<std::size_t>(clusters_.of(i))];
+  }
   const std::size_t first = candidates.size();
-  candidates.resize(first + static_cast<std::size_t>(clusters_.count()));
+  candidate_of_.assign(echoes_of_.size(), kTooSmall);
+  for (std::size_t cluster = 0; cluster < echoes_of_.size(); ++cluster) {
+    if (echoes_of_[cluster] < static_cast<std::size_t>(config_.min_echoes)) continue;
+    candidate_of_[cluster] = candidates.size();
+    candidates.add(echoes_of_[cluster]);
+  }
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
     if (clusters_.of(i) == Clusters::kNone) continue;
-    candidates[first + static_cast<std::size_t>(clusters_.of(i))].echoes.push_back(static_cast<std::uint32_t>(i));
+    const std::size_t candidate = candidate_of_[static_cast<std::size_t>(clusters_.of(i))];
+    if (candidate != kTooSmall) candidates[candidate].echoes.push_back(static_cast<std::uint32_t>(i));
   }
-  const auto is_small = [&](const Candidate& candidate) {
-    return candidate.echoes.size() < static_cast<std::size_t>(config_.min_echoes);
-  };
-  const auto appended = candidates.begin() + static_cast<std::ptrdiff_t>(first);
-  candidates.erase(std::remove_if(appended, candidates.end(), is_small), candidates.end());
   for (std::size_t i = first; i < candidates.size(); ++i) describeEchoes(scan, candidates[i]);
 }
 
-void CandidateFinder::cutOut(const JudgedScan& scan, const Expected& thing, std::size_t whole,
-                             std::vector<Candidate>& candidates) const {
-  const bool is_larger = ((thing.extent - candidates[whole].extent()).array() <= kRim).all();
-  const bool worth_it = thing.moves_whole && thing.isLong() && thing.isWithin(candidates[whole]) && is_larger;
+void CandidateFinder::cutOut(const JudgedScan& scan, const Expected& thing, std::size_t whole, Candidates& candidates) {
+  const bool fits_in = ((thing.extent - candidates[whole].extent()).array() <= kRim).all();
+  const bool worth_it = thing.moves_whole && thing.isLong() && thing.isWithin(candidates[whole]) && fits_in;
   if (!worth_it) return;
-  Candidate part, rest;
-  for (const std::uint32_t echo : candidates[whole].echoes) {
+  const auto is_part = [&](std::uint32_t echo) {
     const Eigen::Vector3d offset = scan.odom_from_points * scan.points[echo].cast<double>() - thing.center;
     const bool inside = (offset.array().abs() <= (0.5 * thing.extent).array() + kTightRim).all();
-    (inside && scan.places[echo] != Place::kSettled ? part : rest).echoes.push_back(echo);
-  }
-  if (part.echoes.size() < kWorthCutting || rest.echoes.size() < kWorthCutting) return;
+    return inside && scan.places[echo] != Place::kSettled;
+  };
+  const auto all = candidates[whole].echoes.size();
+  const auto of_part = static_cast<std::size_t>(
+      std::count_if(candidates[whole].echoes.begin(), candidates[whole].echoes.end(), is_part));
+  if (of_part < kWorthCutting || all - of_part < kWorthCutting) return;
+  Candidate& part = candidates.add(of_part);
+  Candidate& rest = candidates[whole];
+  std::copy_if(rest.echoes.begin(), rest.echoes.end(), std::back_inserter(part.echoes), is_part);
+  rest.echoes.erase(std::remove_if(rest.echoes.begin(), rest.echoes.end(), is_part), rest.echoes.end());
   part.cut_out = true;
+  rest.cut_out = false;
   describeEchoes(scan, part);
   describeEchoes(scan, rest);
-  candidates[whole] = std::move(rest);
-  candidates.push_back(std::move(part));
 }
 
 bool CandidateFinder::isMixed(const Candidate& candidate, const std::vector<Expected>& expected) const {
@@ -94,7 +103,7 @@ bool CandidateFinder::isMixed(const Candidate& candidate, const std::vector<Expe
   return hides_a_thing || candidate.new_echoes >= config_.min_echoes;
 }
 
-void CandidateFinder::release(const JudgedScan& scan, std::vector<Candidate>& candidates) {
+void CandidateFinder::release(const JudgedScan& scan, Candidates& candidates) {
   const auto releasable = [&](const Candidate& candidate) { return isReleasable(candidate); };
   if (std::none_of(candidates.begin(), candidates.end(), releasable)) return;
   standing_.assign(scan.points.size(), Standing::kOut);
@@ -109,7 +118,7 @@ void CandidateFinder::release(const JudgedScan& scan, std::vector<Candidate>& ca
   }
 }
 
-void CandidateFinder::countParts(const JudgedScan& scan, const std::vector<Candidate>& candidates) {
+void CandidateFinder::countParts(const JudgedScan& scan, const Candidates& candidates) {
   parts_.assign(static_cast<std::size_t>(fine_clusters_.count()), Part{});
   for (const Candidate& candidate : candidates) {
     if (!isReleasable(candidate)) continue;
@@ -144,7 +153,7 @@ void CandidateFinder::releaseFrom(Candidate& candidate) const {
 
 std::size_t CandidateFinder::memoryBytes() const {
   return clusters_.memoryBytes() + fine_clusters_.memoryBytes() + standing_.capacity() * sizeof(Standing) +
-         parts_.capacity() * sizeof(Part);
+         parts_.capacity() * sizeof(Part) + (echoes_of_.capacity() + candidate_of_.capacity()) * sizeof(std::size_t);
 }
 
 }  // namespace donex

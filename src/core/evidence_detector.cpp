@@ -78,7 +78,7 @@ class EvidenceDetector : public Detector {
   std::size_t memoryBytes() const override {
     const std::size_t an_echo = 2 * sizeof(Eigen::Vector3f) + sizeof(float) + sizeof(Standing) + sizeof(Place) + 3;
     return newness_.memoryBytes() + history_.memoryBytes() + ground_.memoryBytes() + finder_.memoryBytes() +
-           tracker_.memoryBytes() + judged_.points.capacity() * an_echo;
+           tracker_.memoryBytes() + candidates_.memoryBytes() + judged_.points.capacity() * an_echo;
   }
 
  private:
@@ -143,7 +143,7 @@ class EvidenceDetector : public Detector {
   }
 
   void labelObjects(EchoLabels& labels) {
-    finder_.find(judged_, tracker_.expected(judged_.stamp), candidates_);
+    finder_.find(judged_, tracker_.expect(judged_.stamp), candidates_);
     tracker_.update(judged_, history_, candidates_);
     finder_.release(judged_, candidates_);
     for (const Candidate& candidate : candidates_) {
@@ -193,7 +193,7 @@ class EvidenceDetector : public Detector {
 
   GridScan scan_;
   JudgedScan judged_;
-  std::vector<Candidate> candidates_;
+  Candidates candidates_;
   std::vector<std::uint8_t> dynamic_;
 };
 

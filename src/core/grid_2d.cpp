@@ -81,9 +81,11 @@ void Grid2d::take(const Scan& scan, EchoLabels& labels) {
     Part& part = parts_[i];
     // The first part takes the others' cells over later.
     part.begin(i == 0 ? echoes : (last - first) * EchoBlock::kSize);
+    const auto taken_by_first = [&](std::uint32_t slot) -> HeightRange& { return cells_[slot].taken; };
+    const auto taken_by_other = [&](std::uint32_t slot) -> HeightRange& { return part.taken[slot]; };
     forEachBlock(placement, scan.echoes, first, last, [&](std::size_t first_echo, const EchoBlock& block) {
-      if (i == 0) judge(part, first_echo, block, labels, [&](auto slot) -> auto& { return cells_[slot].taken; });
-      else judge(part, first_echo, block, labels, [&](auto slot) -> auto& { return part.taken[slot]; });
+      i == 0 ? judge(part, first_echo, block, labels, taken_by_first)
+             : judge(part, first_echo, block, labels, taken_by_other);
     });
   };
   workers_.each(parts_.size(), std::ref(judge_part));  // by reference: a copy of it would be allocated
@@ -111,8 +113,7 @@ void Grid2d::judge(Part& part, std::size_t first, const EchoBlock& block, EchoLa
     const HeightRange& remembered = cells_[at.slot[i]].remembered;
     HeightRange& taken = taken_of(at.slot[i]);
     const float height = block.z[i] + lift;
-    const bool is_outside_range =
-        static_cast<int>(height < remembered.lo) | static_cast<int>(height > remembered.hi);
+    const bool is_outside_range = static_cast<int>(height < remembered.lo) | static_cast<int>(height > remembered.hi);
     const int is_new = block.inside[i] & static_cast<int>(is_outside_range);
     // Both lists are written to in any case: no branch to guess.
     part.hit[part.hit_count] = at.slot[i];

@@ -7,7 +7,6 @@ namespace donex {
 namespace {
 
 constexpr double kFoundWindow = 0.5;  // [s]
-constexpr std::size_t kRememberedStamps = 600;
 constexpr double kBeforeEverything = -std::numeric_limits<double>::infinity();
 /// A settled voxel counts as a neighbouring surface while it was hit within this many scans.
 constexpr std::uint32_t kRecentScans = 4;
@@ -19,25 +18,23 @@ ScanClock::ScanClock(double birth_window)
 
 void ScanClock::begin(double stamp) {
   ++scan_;
-  stamps_.push_back(stamp);
-  if (stamps_.size() > kRememberedStamps) stamps_.pop_front();
+  stamps_[scan_ % kRememberedStamps] = stamp;
   advance(new_since_, new_window_);
   advance(found_since_, found_window_);
 }
 
 void ScanClock::advance(std::uint32_t& since, double window) const {
-  while (since < scan_ && stampOf(since) < stamps_.back() - window) ++since;
+  while (since < scan_ && stampOf(since) < stampOf(scan_) - window) ++since;
 }
 
 void ScanClock::reset() {
   scan_ = 0;
   new_since_ = found_since_ = 1;
-  stamps_.clear();
 }
 
 double ScanClock::stampOf(std::uint32_t scan) const {
-  const std::size_t ago = scan_ - scan;
-  return ago < stamps_.size() ? stamps_[stamps_.size() - 1 - ago] : kBeforeEverything;
+  const bool is_remembered = scan > 0 && scan_ - scan < kRememberedStamps;
+  return is_remembered ? stamps_[scan % kRememberedStamps] : kBeforeEverything;
 }
 
 bool wasFree(const EvidenceConfig& config, const SightHistory& history, const Eigen::Vector3f& point, double since,

@@ -26,10 +26,13 @@ constexpr double kSettledFragment = 0.2;  // share
 
 }  // namespace
 
-void ObjectTracker::update(const JudgedScan& scan, const SightHistory& history, std::vector<Candidate>& candidates) {
+ObjectTracker::ObjectTracker(const ObjectConfig& config) : config_(config), traces_(kLookBack.back(), kLost) {}
+
+void ObjectTracker::update(const JudgedScan& scan, const SightHistory& history, Candidates& candidates) {
   objects_.clear();
+  expect(scan.stamp, &Track::full_extent);
   sensor_ = scan.odom_from_points * scan.sensor.cast<double>();
-  const std::vector<Expected> wholes = expected(scan.stamp, &Track::full_extent);
+  traces_.begin(scan.stamp);
   match(scan.stamp, candidates);
   const MotionEvidence evidence(scan, history);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -38,30 +41,22 @@ void ObjectTracker::update(const JudgedScan& scan, const SightHistory& history, 
     Track& track = trackOf(i, scan.stamp, candidate);
     if (config_.motion) weigh(track, evidence, scan.stamp, candidate);
     decide(track, scan.stamp, candidate);
-    if (config_.motion) leaveTrace(track, scan, candidate);
+    if (config_.motion) track.trace = traces_.leave(scan, candidate, track.trace);
     if (track.ever_dynamic) describe(track, scan, candidate);
   }
-  complete(wholes, candidates);
+  complete(candidates);
   const auto is_lost = [&](const Track& track) { return track.last_seen < scan.stamp - kLost; };
   tracks_.erase(std::remove_if(tracks_.begin(), tracks_.end(), is_lost), tracks_.end());
 }
 
-std::vector<Expected> ObjectTracker::expected(double stamp, Eigen::Vector3d Track::*extent) const {
-  std::vector<Expected> expected;
+const std::vector<Expected>& ObjectTracker::expect(double stamp, Eigen::Vector3d Track::*extent) {
+  expected_.clear();
   for (const Track& track : tracks_) {
     if (!track.dynamic) continue;
     const bool goes_on = stamp - track.last_moved_whole < kMovesOn && track.velocity.norm() > kSurelyMoving;
-    expected.push_back({track.centerAt(stamp), track.*extent, goes_on});
+    expected_.push_back({track.centerAt(stamp), track.*extent, goes_on});
   }
-  return expected;
-}
-
-const Trace* ObjectTracker::Track::traceBefore(double stamp) const {
-  const Trace* before = nullptr;
-  for (const Trace& trace : traces) {
-    if (trace.stamp <= stamp) before = &trace;
-  }
-  return before;
+  return expected_;
 }
 
 ObjectTracker::Track& ObjectTracker::trackOf(std::size_t candidate_index, double stamp, const Candidate& candidate) {
@@ -79,7 +74,7 @@ ObjectTracker::Track& ObjectTracker::trackOf(std::size_t candidate_index, double
   return tracks_.back();
 }
 
-void ObjectTracker::match(double stamp, const std::vector<Candidate>& candidates) {
+void ObjectTracker::match(double stamp, const Candidates& candidates) {
   pairs_.clear();
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     const Track& track = tracks_[t];
@@ -96,10 +91,10 @@ void ObjectTracker::match(double stamp, const std::vector<Candidate>& candidates
     return std::tie(a.distance, a.track, a.candidate) < std::tie(b.distance, b.track, b.candidate);
   });
   track_of_.assign(candidates.size(), -1);
-  std::vector<bool> taken(tracks_.size(), false);
+  for (Track& track : tracks_) track.is_found = false;
   for (const Pair& pair : pairs_) {
-    if (taken[pair.track] || track_of_[pair.candidate] >= 0) continue;
-    taken[pair.track] = true;
+    if (tracks_[pair.track].is_found || track_of_[pair.candidate] >= 0) continue;
+    tracks_[pair.track].is_found = true;
     track_of_[pair.candidate] = static_cast<int>(pair.track);
   }
 }
@@ -122,14 +117,14 @@ void ObjectTracker::weigh(Track& track, const MotionEvidence& evidence, double s
                           const Candidate& candidate) const {
   bool receded = false, advanced = false, moved = false;
   // What was cut out where it was expected cannot prove by its place that it went there.
+  Trace trace;
   const bool may_tell = !candidate.cut_out && !isMostlySettled(candidate);
   for (const double ago : kLookBack) {
-    const Trace* trace = may_tell ? track.traceBefore(stamp - ago) : nullptr;
-    if (trace == nullptr) continue;
-    const Former former = evidence.lookBack(*trace);
+    if (!may_tell || !traces_.find(track.trace, stamp - ago, trace)) continue;
+    const Former former = evidence.lookBack(trace);
     receded |= former.left >= config_.min_echoes && former.left > former.still;
     advanced |= former.left >= kLeastLeft && candidate.new_echoes >= config_.min_echoes;
-    moved = moved || evidence.hasMoved(*trace, candidate);
+    moved = moved || evidence.hasMoved(trace, candidate);
   }
   track.receding_scans = receded ? track.receding_scans + 1 : 0;
   track.advancing_scans = advanced ? track.advancing_scans + 1 : 0;
@@ -150,9 +145,9 @@ void ObjectTracker::decide(Track& track, double stamp, Candidate& candidate) con
   candidate.moves_whole = stamp - track.last_moved_whole <= kReleaseAfter;
 }
 
-void ObjectTracker::complete(const std::vector<Expected>& wholes, std::vector<Candidate>& candidates) {
+void ObjectTracker::complete(Candidates& candidates) const {
   // A pole before a vehicle leaves fragments of it, too small to tell anything themselves.
-  for (const Expected& whole : wholes) {
+  for (const Expected& whole : expected_) {
     if (!whole.moves_whole || !whole.isLong()) continue;
     const Eigen::Array3d half = 0.5 * whole.extent.array() + kRim;
     for (Candidate& candidate : candidates) {
@@ -162,16 +157,6 @@ void ObjectTracker::complete(const std::vector<Expected>& wholes, std::vector<Ca
       if (inside && !settled && !candidate.dynamic) candidate.dynamic = candidate.moves_whole = true;
     }
   }
-}
-
-void ObjectTracker::leaveTrace(Track& track, const JudgedScan& scan, const Candidate& candidate) {
-  Trace trace;
-  while (track.traces.size() > 1 && track.traces[1].stamp <= scan.stamp - kLookBack.back()) {
-    trace = std::move(track.traces.front());  // its storage is used again
-    track.traces.pop_front();
-  }
-  takeTrace(scan, candidate, trace);
-  track.traces.push_back(std::move(trace));
 }
 
 void ObjectTracker::describe(const Track& track, const JudgedScan& scan, const Candidate& candidate) {
@@ -188,15 +173,14 @@ void ObjectTracker::describe(const Track& track, const JudgedScan& scan, const C
 void ObjectTracker::reset() {
   tracks_.clear();
   objects_.clear();
+  traces_.reset();
   next_id_ = 1;
 }
 
 std::size_t ObjectTracker::memoryBytes() const {
-  std::size_t bytes = tracks_.capacity() * sizeof(Track) + pairs_.capacity() * sizeof(Pair);
-  for (const Track& track : tracks_) {
-    for (const Trace& trace : track.traces) bytes += trace.in_odom.capacity() * sizeof(Eigen::Vector3d);
-  }
-  return bytes;
+  return tracks_.capacity() * sizeof(Track) + pairs_.capacity() * sizeof(Pair) + traces_.memoryBytes() +
+         expected_.capacity() * sizeof(Expected) + track_of_.capacity() * sizeof(int) +
+         objects_.capacity() * sizeof(Object);
 }
 
 }  // namespace donex

@@ -1,22 +1,30 @@
 #include "donex/core/sight_history.h"
 
+#include <algorithm>
+#include <limits>
+#include <utility>
+
 namespace donex {
 
 void SightHistory::add(const Scan& scan, const std::vector<std::uint8_t>& is_echo) {
   const bool too_soon = !kept_.empty() && scan.stamp < kept_.back().stamp + 0.9 * spacing_;
   if (too_soon) return;
-  Kept next;
-  while (!kept_.empty() && kept_.front().stamp < scan.stamp - length_) {
-    next = std::move(kept_.front());  // its image's storage is used again
-    kept_.pop_front();
-  }
-  next.stamp = scan.stamp;
-  next.sensor_from_odom = scan.odomFromSensor().inverse();
-  if (!kept_.empty()) next.image.takeWorkspace(kept_.back().image);
-  if (!kept_.empty()) next.image.takeGapsFrom(kept_.back().image);
+  forget(scan.stamp - length_);
+  Kept next{scan.stamp, scan.odomFromSensor().inverse(), {}, {}};
+  if (!spares_.empty()) next.image = std::move(spares_.back()), spares_.pop_back();
+  if (!kept_.empty()) kept_.back().image.handOn(next.image);
   next.image.build(scan.echoes, is_echo, reading_);
   kept_.push_back(std::move(next));
 }
+
+void SightHistory::forget(double until) {
+  const auto is_kept = [&](const Kept& kept) { return kept.stamp >= until; };
+  const auto first = std::find_if(kept_.begin(), kept_.end(), is_kept);
+  std::for_each(kept_.begin(), first, [&](Kept& kept) { spares_.push_back(std::move(kept.image)); });
+  kept_.erase(kept_.begin(), first);
+}
+
+void SightHistory::reset() { forget(std::numeric_limits<double>::infinity()); }
 
 void SightHistory::askFrom(const Eigen::Isometry3d& odom_from_asked) {
   for (Kept& kept : kept_) kept.sensor_from_asked = (kept.sensor_from_odom * odom_from_asked).cast<float>();
@@ -47,8 +55,9 @@ SightImage::Sight SightHistory::askThroughGaps(const Eigen::Vector3f& point, flo
 }
 
 std::size_t SightHistory::memoryBytes() const {
-  std::size_t bytes = kept_.size() * sizeof(Kept);
+  std::size_t bytes = kept_.capacity() * sizeof(Kept);
   for (const Kept& kept : kept_) bytes += kept.image.memoryBytes();
+  for (const SightImage& spare : spares_) bytes += spare.memoryBytes();
   return bytes;
 }
 

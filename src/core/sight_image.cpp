@@ -14,6 +14,7 @@ constexpr float kRowHeight = 0.006F;  // tangent of the elevation
 constexpr float kSteepest = 1.2F;     // tangent beyond which nothing is asked
 constexpr float kRangeStep = 0.02F;   // [m]
 constexpr float kNearest = 0.3F;      // [m] nothing is asked nearer to the sensor's axis
+constexpr int kSpareRows = 8;
 constexpr float kPi = 3.14159265F;
 
 /// atan2 to 1e-4 rad, the same on every machine; monotone within an octant, which is all a column needs.
@@ -61,6 +62,7 @@ DONEX_WIDE_LOOPS void projectAll(const Eigen::Vector3f* echoes, const std::uint8
 void SightImage::build(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo,
                        const Reading& reading) {
   collect(echoes, is_echo);
+  hit_.reserve(nearest_.capacity());
   hit_ = nearest_;
   if (!reading.careful) return;
   fillBetweenBeams(static_cast<int>(reading.largest_gap / static_cast<double>(kRowHeight)));
@@ -79,7 +81,9 @@ void SightImage::collect(const std::vector<Eigen::Vector3f>& echoes, const std::
   }
   first_row_ = highest < 0 ? 0 : lowest;
   rows_ = highest < 0 ? 0 : highest - lowest + 1;
-  nearest_.assign(static_cast<std::size_t>(kColumns) * static_cast<std::size_t>(rows_), 0);
+  // Room for a few rows more: the next scans may look a little farther up or down.
+  nearest_.reserve(static_cast<std::size_t>(kColumns * (rows_ + kSpareRows - rows_ % kSpareRows)));
+  nearest_.assign(static_cast<std::size_t>(kColumns * rows_), 0);
   for (std::size_t i = 0; i < count; ++i) {
     if (pixels_.rows[i] < 0) continue;
     const auto range = static_cast<Range>(pixels_.ranges[i]);
@@ -103,6 +107,7 @@ void SightImage::fillBetweenBeams(int largest_gap) {
 
 void SightImage::fillBetweenColumns() {
   // Only single columns: a sensor whose azimuth steps are a little wider than ours.
+  scratch_.reserve(nearest_.capacity());
   scratch_ = nearest_;
   for (int c = 0; c < kColumns; ++c) {
     const Range* left = scratch_.data() + static_cast<std::ptrdiff_t>((c - 1) & (kColumns - 1)) * rows_;

@@ -10,7 +10,6 @@ namespace donex {
 namespace {
 
 using testing::JudgedThings;
-using Candidates = std::vector<Candidate>;
 
 constexpr double kReach = 40.0;
 

@@ -1,4 +1,6 @@
 // Former places: what has left them, and what has moved elsewhere.
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "donex/core/motion_evidence.h"
@@ -9,6 +11,18 @@ namespace {
 
 using testing::JudgedThings;
 
+/// The trace of a thing.
+struct Left {
+  TraceHistory history{1.0, 0.6};
+  TraceHistory::Id last;
+
+  operator Trace() const {
+    Trace trace;
+    EXPECT_TRUE(history.find(last, std::numeric_limits<double>::infinity(), trace));
+    return trace;
+  }
+};
+
 /// A scan, its sight and its first thing as a candidate.
 struct Seen {
   explicit Seen(const JudgedThings& seen, std::size_t echoes) : things(seen) {
@@ -18,10 +32,11 @@ struct Seen {
     describeEchoes(things.judged, candidate);
   }
 
-  Trace trace() const {
-    Trace trace;
-    takeTrace(things.judged, candidate, trace);
-    return trace;
+  Left leave() const {
+    Left left;
+    left.history.begin(things.judged.stamp);
+    left.last = left.history.leave(things.judged, candidate, {});
+    return left;
   }
   Former lookBack(const Trace& trace) const { return MotionEvidence(things.judged, history).lookBack(trace); }
   bool hasMoved(const Trace& trace) const { return MotionEvidence(things.judged, history).hasMoved(trace, candidate); }
@@ -42,15 +57,16 @@ Seen somebody(double y, Place place = Place::kUnobserved, double sensor_x = 0.0,
 }
 
 TEST(MotionEvidence, ATraceIsSpreadOverTheThing) {
-  const Trace trace = somebody(-1.0).trace();
-  EXPECT_LE(trace.in_odom.size(), 48U);
-  EXPECT_GT(trace.in_odom.size(), 24U);
+  const Left left = somebody(-1.0).leave();
+  const Trace trace = left;
+  EXPECT_LE(trace.size(), 48U);
+  EXPECT_GT(trace.size(), 24U);
   EXPECT_NEAR(trace.center.y(), -0.75, 1e-4);
-  for (const Eigen::Vector3d& point : trace.in_odom) EXPECT_NEAR(point.x(), 8.0, 1e-4);
+  for (const Eigen::Vector3d& point : trace) EXPECT_NEAR(point.x(), 8.0, 1e-4);
 }
 
 TEST(MotionEvidence, WhatStandsIsStillThere) {
-  const Trace trace = somebody(-1.0).trace();
+  const Left trace = somebody(-1.0).leave();
   const Seen now = somebody(-1.0, Place::kUnobserved, 0.5);
   EXPECT_EQ(now.lookBack(trace).left, 0);
   EXPECT_GT(now.lookBack(trace).still, 40);
@@ -58,28 +74,28 @@ TEST(MotionEvidence, WhatStandsIsStillThere) {
 }
 
 TEST(MotionEvidence, APlaceIsLeftWhenTheWallBehindItIsSeen) {
-  const Trace trace = somebody(-2.0).trace();
+  const Left trace = somebody(-2.0).leave();
   const Former former = somebody(1.0).lookBack(trace);
   EXPECT_GT(former.left, 20) << "all of it before the wall";
   EXPECT_EQ(former.still, 0);
 }
 
 TEST(MotionEvidence, NothingIsKnownOfAPlaceThatIsHiddenNow) {
-  const Trace trace = somebody(-2.0).trace();
+  const Left trace = somebody(-2.0).leave();
   const Seen now = somebody(1.0, Place::kUnobserved, 0.0, true);
   EXPECT_EQ(now.lookBack(trace).left, 0);
   EXPECT_FALSE(now.hasMoved(trace));
 }
 
 TEST(MotionEvidence, AShapeFoundElsewhereHasMoved) {
-  const Trace trace = somebody(-2.0).trace();
+  const Left trace = somebody(-2.0).leave();
   EXPECT_TRUE(somebody(-1.2).hasMoved(trace));
   EXPECT_FALSE(somebody(-1.85).hasMoved(trace)) << "not far enough to tell";
   EXPECT_FALSE(somebody(-1.2, Place::kSettled).hasMoved(trace)) << "what is settled stood there";
 }
 
 TEST(MotionEvidence, AnotherShapeIsAnotherThing) {
-  const Trace trace = somebody(-2.0).trace();
+  const Left trace = somebody(-2.0).leave();
   JudgedThings things(0.0);
   things.face({8.0, -0.5, 0.4}, {0.0, 0.1, 0.0}, 0.4, Place::kUnobserved, 0.05);
   const std::size_t echoes = things.judged.points.size();

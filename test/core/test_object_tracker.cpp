@@ -24,7 +24,7 @@ class Followed {
   std::size_t step(const JudgedThings& things) {
     history_.add(things.scan(), things.judged.is_echo);
     history_.askFrom(things.judged.odom_from_points);
-    finder_.find(things.judged, tracker.expected(things.judged.stamp), candidates);
+    finder_.find(things.judged, tracker.expect(things.judged.stamp), candidates);
     tracker.update(things.judged, history_, candidates);
     std::size_t moving = 0;
     for (const Candidate& candidate : candidates) moving += candidate.dynamic ? candidate.echoes.size() : 0U;
@@ -37,7 +37,7 @@ class Followed {
 
  public:
   ObjectTracker tracker;
-  std::vector<Candidate> candidates;
+  Candidates candidates;
 };
 
 /// The rear and a side of a vehicle whose rear is at x.

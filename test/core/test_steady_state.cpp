@@ -3,6 +3,7 @@
 
 #include "donex/core/detector.h"
 #include "donex/core/memory_bound.h"
+#include "donex/simulation/simulator.h"
 #include "support/counted_allocations.h"
 #include "support/random_scans.h"
 
@@ -60,6 +61,34 @@ TEST_P(SteadyState, TakesWhatWasSaid) {
   }
 }
 
+class DefaultSteadyState : public ::testing::TestWithParam<Method> {};
+
+/// Nothing is allocated on a stretch of road like one that was driven before, objects and all.
+TEST_P(DefaultSteadyState, AllocatesNothingAScan) {
+  Config config;
+  config.method = GetParam();
+  simulation::SimulatorOptions options;
+  options.beams = 32;
+  options.duration = 3.0;
+  simulation::Simulator simulator("intersection", options);
+  std::vector<Scan> scans;
+  for (simulation::SimulatedScan scan; simulator.next(scan);) scans.push_back(scan.coreScan());
+  const auto detector = makeDetector(config);
+  EchoLabels labels;
+  std::size_t dynamic = 0, before = 0;
+  for (int drive = 0; drive < 3; ++drive) {
+    before = testing::allocations();
+    detector->reset();
+    for (const Scan& scan : scans) {
+      detector->process(scan, labels);
+      for (const std::uint8_t label : labels.dynamic) dynamic += label;
+    }
+  }
+  EXPECT_EQ(testing::allocations() - before, 0U);
+  EXPECT_GT(dynamic, 1000U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Both, DefaultSteadyState, ::testing::Values(Method::kDonex2d, Method::kDonex3d));
 INSTANTIATE_TEST_SUITE_P(Paper, SteadyState, ::testing::Values(Method::kDonex2d, Method::kDonex3d));
 
 }  // namespace

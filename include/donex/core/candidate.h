@@ -1,17 +1,22 @@
 // A thing of one scan that may move (algorithm section 5, step 6).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <memory_resource>
 #include <vector>
 
 #include "donex/core/config.h"
 #include "donex/core/judged_scan.h"
+#include "donex/core/scan_memory.h"
 
 namespace donex {
 
 /// A thing of the present scan and what its echoes say.
 struct Candidate {
-  std::vector<std::uint32_t> echoes;  ///< indices into the scan
+  explicit Candidate(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) : echoes(memory) {}
+
+  std::pmr::vector<std::uint32_t> echoes;  ///< indices into the scan
   int new_echoes = 0;
   int settled_echoes = 0;
   Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();  ///< odometry frame [m]
@@ -21,6 +26,43 @@ struct Candidate {
 
   Eigen::Vector3d center() const { return 0.5 * (low + high); }
   Eigen::Vector3d extent() const { return high - low; }
+};
+
+/// The things of one scan.
+class Candidates {
+ public:
+  /// Makes one more, with room for so many echoes. Valid until the next call.
+  Candidate& add(std::size_t echoes) {
+    Candidate& candidate = things_.emplace_back(memory_.resource());
+    candidate.echoes.reserve(echoes);
+    return candidate;
+  }
+  /// Keeps the order of the others.
+  template <class Condition>
+  bool removeIf(Condition&& condition) {
+    const auto end = std::remove_if(things_.begin(), things_.end(), condition);
+    const bool any = end != things_.end();
+    things_.erase(end, things_.end());
+    return any;
+  }
+  void clear() {
+    things_.clear();
+    memory_.release();
+  }
+
+  std::size_t size() const { return things_.size(); }
+  Candidate& operator[](std::size_t i) { return things_[i]; }
+  const Candidate& operator[](std::size_t i) const { return things_[i]; }
+  auto begin() { return things_.begin(); }
+  auto begin() const { return things_.begin(); }
+  auto end() { return things_.end(); }
+  auto end() const { return things_.end(); }
+
+  std::size_t memoryBytes() const { return memory_.bytes() + things_.capacity() * sizeof(Candidate); }
+
+ private:
+  ScanMemory memory_;  ///< outlives the things
+  std::vector<Candidate> things_;
 };
 
 /// Where a moving thing that is followed should be now, odometry frame [m].

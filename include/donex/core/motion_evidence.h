@@ -1,24 +1,13 @@
 // What the present scan says of the place where an object was (algorithm section 5, step 6).
 #pragma once
 
-#include <vector>
-
 #include <Eigen/Geometry>
 
 #include "donex/core/candidate.h"
 #include "donex/core/sight_history.h"
+#include "donex/core/trace_history.h"
 
 namespace donex {
-
-/// Where some of an object's echoes were.
-struct Trace {
-  double stamp = 0.0;                                ///< [s]
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< of the object, odometry frame [m]
-  std::vector<Eigen::Vector3d> in_odom;              ///< [m]
-};
-
-/// Replaces `trace` by the candidate's echoes, or every so many of them.
-void takeTrace(const JudgedScan& scan, const Candidate& candidate, Trace& trace);
 
 /// The line of sight's own history: what stood there has left, or stands there still, or is not known.
 struct Former {

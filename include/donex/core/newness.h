@@ -1,8 +1,8 @@
 // Is an echo's place new, settled, or neither? The question of both grids, each from its own memory.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <deque>
 
 #include "donex/core/birth_memory.h"
 #include "donex/core/cell_layout.h"
@@ -28,12 +28,14 @@ class ScanClock {
   double stampOf(std::uint32_t scan) const;
 
  private:
+  static constexpr std::size_t kRememberedStamps = 600;
+
   void advance(std::uint32_t& since, double window) const;
 
   double new_window_, found_window_;  ///< [s]
   std::uint32_t scan_ = 0;
   std::uint32_t new_since_ = 1, found_since_ = 1;  ///< oldest births that are young
-  std::deque<double> stamps_;  ///< of the last scans, newest last
+  std::array<double, kRememberedStamps> stamps_{};  ///< [s] by scan, modulo their number
 };
 
 /// The 3D grid's answer, from each voxel's birth (algorithm section 5, steps 1 to 4).

@@ -1,7 +1,6 @@
 // Connected echoes followed over time: is this thing moving? (algorithm section 5, step 6)
 #pragma once
 
-#include <deque>
 #include <limits>
 #include <vector>
 
@@ -19,14 +18,14 @@ namespace donex {
 ///  - where its former shape fits it at another place, and is gone from the old one.
 class ObjectTracker {
  public:
-  explicit ObjectTracker(const ObjectConfig& config) : config_(config) {}
+  explicit ObjectTracker(const ObjectConfig& config);
 
   /// Decides `dynamic` of every candidate of a scan. `history` is asked in the scan's points; its newest
   /// scan is this one.
-  void update(const JudgedScan& scan, const SightHistory& history, std::vector<Candidate>& candidates);
+  void update(const JudgedScan& scan, const SightHistory& history, Candidates& candidates);
 
-  /// Where the moving objects should be at `stamp` [s].
-  std::vector<Expected> expected(double stamp) const { return expected(stamp, &Track::extent); }
+  /// Where the moving objects should be at `stamp` [s]. Valid until the next call.
+  const std::vector<Expected>& expect(double stamp) { return expect(stamp, &Track::extent); }
 
   /// Objects of the last scan that move, or moved since they are followed.
   const std::vector<Object>& objects() const { return objects_; }
@@ -45,30 +44,30 @@ class ObjectTracker {
     double last_motion = kNever, last_moved_whole = kNever;
     int receding_scans = 0, advancing_scans = 0, moving_scans = 0;  ///< in a row
     bool dynamic = false, ever_dynamic = false;
-    std::deque<Trace> traces;
+    bool is_found = false;   ///< in the present scan
+    TraceHistory::Id trace;  ///< its last one
 
     Eigen::Vector3d centerAt(double stamp) const { return center + velocity * (stamp - last_seen); }
-    /// The latest trace not younger than `stamp`, or nullptr.
-    const Trace* traceBefore(double stamp) const;
   };
   struct Pair {
     double distance;
     std::size_t track, candidate;
   };
 
-  void match(double stamp, const std::vector<Candidate>& candidates);
+  void match(double stamp, const Candidates& candidates);
   Track& trackOf(std::size_t candidate_index, double stamp, const Candidate& candidate);
   static void follow(Track& track, double stamp, const Candidate& candidate);
   void weigh(Track& track, const MotionEvidence& evidence, double stamp, const Candidate& candidate) const;
   void decide(Track& track, double stamp, Candidate& candidate) const;
-  std::vector<Expected> expected(double stamp, Eigen::Vector3d Track::*extent) const;
-  static void complete(const std::vector<Expected>& wholes, std::vector<Candidate>& candidates);
-  static void leaveTrace(Track& track, const JudgedScan& scan, const Candidate& candidate);
+  const std::vector<Expected>& expect(double stamp, Eigen::Vector3d Track::*extent);
+  void complete(Candidates& candidates) const;
   void describe(const Track& track, const JudgedScan& scan, const Candidate& candidate);
 
   ObjectConfig config_;
   Eigen::Vector3d sensor_ = Eigen::Vector3d::Zero();  ///< of the present scan, odometry frame [m]
+  TraceHistory traces_;
   std::vector<Track> tracks_;
+  std::vector<Expected> expected_;
   std::vector<Pair> pairs_;
   std::vector<int> track_of_;  ///< by candidate, -1 where it is followed for the first time
   std::vector<Object> objects_;

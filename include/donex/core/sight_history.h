@@ -1,7 +1,7 @@
 // The last few scans' sights: was this place seen free lately?
 #pragma once
 
-#include <deque>
+#include <vector>
 
 #include "donex/core/scan.h"
 #include "donex/core/sight_image.h"
@@ -38,7 +38,7 @@ class SightHistory {
   SightImage::Sight askThroughGaps(const Eigen::Vector3f& point, float margin) const;
 
   bool empty() const { return kept_.empty(); }
-  void reset() { kept_.clear(); }
+  void reset();
   std::size_t memoryBytes() const;
 
  private:
@@ -49,10 +49,13 @@ class SightHistory {
     SightImage image;
   };
 
+  void forget(double until);
+
   double length_, spacing_;
   float margin_;
   SightImage::Reading reading_;
-  std::deque<Kept> kept_;  ///< oldest first
+  std::vector<Kept> kept_;          ///< oldest first
+  std::vector<SightImage> spares_;  ///< storage for the next images
 };
 
 }  // namespace donex

@@ -27,10 +27,12 @@ class SightImage {
   void build(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo,
              const Reading& reading);
 
-  /// Takes over what another image's build needed and its answers do not.
-  void takeWorkspace(SightImage& other) {
-    scratch_ = std::move(other.scratch_);
-    pixels_ = std::move(other.pixels_);
+  /// Hands on to a later scan's image what its build needs: storage that answers do not, and that for single lines of
+  /// sight, which this one is not asked for any more.
+  void handOn(SightImage& later) {
+    later.scratch_ = std::move(scratch_);
+    later.pixels_ = std::move(pixels_);
+    later.hit_ = std::move(hit_);
   }
 
   enum class Sight { kUnknown, kFree, kSurface, kHidden };
@@ -39,11 +41,8 @@ class SightImage {
   /// beyond, surface within the margin, hidden behind one, or nothing known.
   Sight at(const Eigen::Vector3f& point, float margin) const;
 
-  /// The same of the single lines of sight, not read carefully; unknown once the gaps were taken.
+  /// The same of the single lines of sight, not read carefully; unknown once they were handed on.
   Sight throughGaps(const Eigen::Vector3f& point, float margin) const;
-
-  /// Takes the storage for single lines of sight over from a scan that is not asked for them any more.
-  void takeGapsFrom(SightImage& older) { hit_.swap(older.hit_); }
 
   std::size_t memoryBytes() const;
 
