@@ -4,11 +4,18 @@
 #include <stdexcept>
 
 namespace donex {
+namespace {
+
+/// Bricks that there is room for from the beginning: memory that is not used is never touched, and none is ever moved.
+double bricksFor(const Eigen::Vector3d& extent) { return (extent.head<2>() / GridWindow::kBrick).prod(); }
+
+}  // namespace
 
 BirthMemory::BirthMemory(const Config& config)
     : window_(config), layout_(window_.extent()), brick_of_slot_(layout_.slots(), kNoBrick) {
   if (config.compensation != Compensation::kScroll) throw std::invalid_argument("births cannot be resampled");
   layout_.scrollTo(window_.minIndex());
+  bricks_.reserve(static_cast<std::size_t>(bricksFor(window_.extent().cast<double>())));
 }
 
 void BirthMemory::shift(const Eigen::Isometry3d& odom_from_base) {
@@ -54,6 +61,10 @@ VoxelRecord& BirthMemory::at(const Index3& in_window) {
 void BirthMemory::reset() {
   std::fill(brick_of_slot_.begin(), brick_of_slot_.end(), kNoBrick);
   bricks_.clear();
+}
+
+double BirthMemory::bytesFor(const Eigen::Vector3d& extent) {
+  return (extent / GridWindow::kBrick).prod() * sizeof(std::uint32_t) + bricksFor(extent) * sizeof(Brick);
 }
 
 std::size_t BirthMemory::memoryBytes() const {

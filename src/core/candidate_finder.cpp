@@ -151,6 +151,11 @@ void CandidateFinder::releaseFrom(Candidate& candidate) const {
   candidate.echoes.erase(kept, candidate.echoes.end());
 }
 
+double CandidateFinder::bytesFor(double reach, const ObjectConfig& config, double echoes) {
+  return Clusters::bytesFor(reach, clustersOf(config, config.cell), echoes, 0.5 * echoes) +
+         Clusters::bytesFor(reach, clustersOf(config, 0.5 * config.cell), echoes, 0.0) + echoes * sizeof(Standing);
+}
+
 std::size_t CandidateFinder::memoryBytes() const {
   return clusters_.memoryBytes() + fine_clusters_.memoryBytes() + standing_.capacity() * sizeof(Standing) +
          parts_.capacity() * sizeof(Part) + (echoes_of_.capacity() + candidate_of_.capacity()) * sizeof(std::size_t);

@@ -9,9 +9,11 @@ namespace donex {
 
 Clusters::Clusters(double reach, const Settings& settings)
     : settings_(settings),
-      width_(2 * static_cast<int>(std::ceil(reach / settings.cell)) + 1),
+      width_(widthOf(reach, settings.cell)),
       layers_(static_cast<int>(std::ceil(settings.height / settings.cell)) + 1),
       column_at_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(width_), kNone) {}
+
+int Clusters::widthOf(double reach, double cell) { return 2 * static_cast<int>(std::ceil(reach / cell)) + 1; }
 
 int& Clusters::makeCell(int x, int y, int z) {
   int& column = column_at_[static_cast<std::size_t>(y * width_ + x)];
@@ -111,10 +113,17 @@ void Clusters::number() {
   }
 }
 
+double Clusters::bytesFor(double reach, const Settings& settings, double echoes, double connected) {
+  constexpr double kEchoesACell = 6.0, kCellsAColumn = 3.0;
+  const double columns = connected / kEchoesACell / kCellsAColumn, layers = settings.height / settings.cell + 1.0;
+  const double a_cell = sizeof(Cell) + sizeof(int) + layers / kCellsAColumn * sizeof(int);
+  return sizeof(int) * (std::pow(widthOf(reach, settings.cell), 2) + echoes) + kCellsAColumn * columns * a_cell;
+}
+
 std::size_t Clusters::memoryBytes() const {
   return (column_at_.capacity() + cell_in_column_.capacity() + of_.capacity() + number_of_root_.capacity()) *
              sizeof(int) +
-         cells_.capacity() * sizeof(Cell);
+         cells_.capacity() * sizeof(Cell) + skirt_.capacity() * sizeof(skirt_[0]);
 }
 
 }  // namespace donex

@@ -73,11 +73,12 @@ std::vector<std::string> Config::faults() const {
   checkExtent("x", region.x_min, region.x_max, voxel_size, faults);
   checkExtent("y", region.y_min, region.y_max, voxel_size, faults);
   checkExtent("z", region.z_min, region.z_max, voxel_size, faults);
-  const double megabytes = gridBytes(*this) / 1e6;
+  const double megabytes = memoryBound(*this, kUsualScan) / 1e6;
   const bool fits = megabytes <= memory_limit;  // false where the region or voxel size is not a number
   if (!fits && faults.empty()) {
     std::ostringstream text;
-    text << "the grid needs " << megabytes << " MB, more than memory_limit (" << memory_limit
+    text << "the grid needs " << megabytes << " MB for scans of " << kUsualScan
+         << " echoes, more than memory_limit (" << memory_limit
          << " MB): choose a smaller region or a larger voxel_size";
     faults.push_back(text.str());
   }

@@ -7,6 +7,7 @@
 #include "donex/core/ground.h"
 #include "donex/core/newness.h"
 #include "donex/core/object_tracker.h"
+#include "donex/core/storage.h"
 #include "donex/core/stream_guard.h"
 
 namespace donex {
@@ -76,9 +77,12 @@ class EvidenceDetector : public Detector {
   GridOutline outline() const override { return newness_.window().outline(); }
 
   std::size_t memoryBytes() const override {
-    const std::size_t an_echo = 2 * sizeof(Eigen::Vector3f) + sizeof(float) + sizeof(Standing) + sizeof(Place) + 3;
-    return newness_.memoryBytes() + history_.memoryBytes() + ground_.memoryBytes() + finder_.memoryBytes() +
-           tracker_.memoryBytes() + candidates_.memoryBytes() + judged_.points.capacity() * an_echo;
+    const std::size_t in_grid = scan_.echoes.capacity() * sizeof(Eigen::Vector3f) + scan_.inside.capacity();
+    const std::size_t judged = judged_.points.capacity() * sizeof(Eigen::Vector3f) +
+                               judged_.heights.capacity() * sizeof(float) + judged_.is_echo.capacity() +
+                               judged_.standing.capacity() + judged_.places.capacity() + dynamic_.capacity();
+    return in_grid + judged + newness_.memoryBytes() + history_.memoryBytes() + ground_.memoryBytes() +
+           finder_.memoryBytes() + tracker_.memoryBytes() + candidates_.memoryBytes();
   }
 
  private:
@@ -89,8 +93,8 @@ class EvidenceDetector : public Detector {
     judged_.stamp = stamp;
     judged_.odom_from_points = window.odomFromGrid() * Eigen::Translation3d(corner);
     judged_.sensor = scan_.origin * size;
-    judged_.points.resize(scan_.echoes.size());
-    judged_.is_echo.resize(scan_.echoes.size());
+    resizeTo(judged_.points, scan_.echoes.size());
+    resizeTo(judged_.is_echo, scan_.echoes.size());
     for (std::size_t i = 0; i < scan_.echoes.size(); ++i) {
       judged_.points[i] = scan_.echoes[i] * size;
       judged_.is_echo[i] = std::isnan(scan_.echoes[i].x()) ? 0 : 1;
@@ -100,7 +104,7 @@ class EvidenceDetector : public Detector {
   void findGround() {
     const bool enabled = config_.evidence.ground;
     const auto clearance = static_cast<float>(config_.evidence.ground_clearance);
-    judged_.heights.resize(judged_.points.size());
+    resizeTo(judged_.heights, judged_.points.size());
     if (enabled) {
       ground_.estimate(judged_.sensor, judged_.points, judged_.is_echo);
       ground_.heightsOf(judged_.points, judged_.heights);
@@ -204,6 +208,21 @@ std::unique_ptr<Detector> makeEvidenceDetector3d(const Config& config) {
 }
 std::unique_ptr<Detector> makeEvidenceDetector2d(const Config& config) {
   return std::make_unique<EvidenceDetector<Newness2d>>(config);
+}
+
+
+double evidenceBytes(const Config& config, double echoes) {
+  constexpr double kInGrid = sizeof(Eigen::Vector3f) + 1.0;  // place and inside
+  constexpr double kJudged = sizeof(Eigen::Vector3f) + sizeof(float) + 1.0;
+  constexpr double kVerdict = sizeof(Standing) + sizeof(Place) + 1.0;
+  constexpr double kThings = 20.0;  // bytes an echo, about: candidates, tracks and their traces
+  const double reach = reachOf(config.region);
+  const Eigen::Vector3d extent = GridWindow::extentOf(config.scrolling());
+  double bytes = roomFor((kInGrid + kJudged) * echoes) + kVerdict * echoes;
+  bytes += config.method == Method::kDonex2d ? Newness2d::bytesFor(extent) : Newness3d::bytesFor(extent);
+  bytes += SightHistory::bytesFor(config.evidence.history_length, kHistorySpacing, echoes);
+  bytes += Ground::bytesFor(reach, echoes);
+  return bytes + CandidateFinder::bytesFor(reach, config.objects, echoes) + kThings * echoes;
 }
 
 }  // namespace donex

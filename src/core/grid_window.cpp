@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "donex/core/storage.h"
+
 namespace donex {
 namespace {
 
@@ -80,8 +82,8 @@ Placement GridWindow::placementOf(const Scan& scan) const {
 void GridWindow::enter(const Scan& scan, GridScan& result) const {
   const Placement placement = placementOf(scan);
   result.origin = placement.origin;
-  result.echoes.resize(scan.echoes.size());
-  result.inside.resize(scan.echoes.size());
+  resizeTo(result.echoes, scan.echoes.size());
+  resizeTo(result.inside, scan.echoes.size());
   const auto keep = [&](std::size_t first, const EchoBlock& block) {
     for (int i = 0; i < block.count; ++i) {
       result.echoes[first + static_cast<std::size_t>(i)] = {block.x[i], block.y[i], block.z[i]};

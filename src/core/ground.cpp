@@ -7,6 +7,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "donex/core/storage.h"
 #include "simd.h"
 
 namespace donex {
@@ -47,11 +48,14 @@ DONEX_WIDE_LOOPS void findCells(const Eigen::Vector3f& sensor, int width, const 
 
 }  // namespace
 
-Ground::Ground(double reach) : width_(2 * static_cast<int>(std::ceil(reach / static_cast<double>(kCell))) + 1) {
+int Ground::widthOf(double reach) { return 2 * static_cast<int>(std::ceil(reach / static_cast<double>(kCell))) + 1; }
+
+Ground::Ground(double reach) : width_(widthOf(reach)) {
   const auto cells = static_cast<std::size_t>(width_) * static_cast<std::size_t>(width_);
   lowest_.resize(cells);
   ground_.resize(cells, kNone);
   unseen_.resize(cells, 0.0F);
+  outwards_.reserve(cells);
   for (int y = -(width_ / 2); y <= width_ / 2; ++y) {
     for (int x = -(width_ / 2); x <= width_ / 2; ++x) {
       outwards_.push_back({static_cast<std::int16_t>(x), static_cast<std::int16_t>(y)});
@@ -73,7 +77,7 @@ void Ground::estimate(const Eigen::Vector3f& sensor, const std::vector<Eigen::Ve
   sensor_ = sensor;
   std::fill(lowest_.begin(), lowest_.end(), kNone);
   std::fill(ground_.begin(), ground_.end(), kNone);
-  cell_of_.resize(echoes.size());
+  resizeTo(cell_of_, echoes.size());
   findCells(sensor_, width_, echoes.data(), echoes.size(), cell_of_.data());
   for (std::size_t i = 0; i < echoes.size(); ++i) {
     if (is_echo[i] == 0 || cell_of_[i] < 0) continue;
@@ -154,7 +158,7 @@ float Ground::heightOf(const Eigen::Vector3f& point) const {
 }
 
 void Ground::heightsOf(const std::vector<Eigen::Vector3f>& echoes, std::vector<float>& heights) const {
-  heights.resize(echoes.size());
+  resizeTo(heights, echoes.size());
   for (std::size_t i = 0; i < echoes.size(); ++i) heights[i] = heightIn(cell_of_[i], echoes[i].z());
 }
 
@@ -162,6 +166,11 @@ float Ground::heightIn(int cell, float z) const {
   if (cell < 0) return kNone;
   const float ground = ground_[static_cast<std::size_t>(cell)];
   return ground == kNone ? kNone : z - ground;
+}
+
+double Ground::bytesFor(double reach, double echoes) {
+  const double cells = std::pow(widthOf(reach), 2);
+  return cells * (sizeof(Cell) + 3 * sizeof(float)) + roomFor(echoes * sizeof(int));
 }
 
 std::size_t Ground::memoryBytes() const {

@@ -54,6 +54,11 @@ SightImage::Sight SightHistory::askThroughGaps(const Eigen::Vector3f& point, flo
   return kept_.back().image.throughGaps(kept_.back().sensor_from_asked * point, margin);
 }
 
+double SightHistory::bytesFor(double length, double spacing, double echoes) {
+  const double images = length / spacing + 2.0;  // both ends count, and one more is on its way out
+  return images * SightImage::answerBytes() + SightImage::workspaceBytes(echoes);
+}
+
 std::size_t SightHistory::memoryBytes() const {
   std::size_t bytes = kept_.capacity() * sizeof(Kept);
   for (const Kept& kept : kept_) bytes += kept.image.memoryBytes();

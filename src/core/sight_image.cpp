@@ -14,7 +14,8 @@ constexpr float kRowHeight = 0.006F;  // tangent of the elevation
 constexpr float kSteepest = 1.2F;     // tangent beyond which nothing is asked
 constexpr float kRangeStep = 0.02F;   // [m]
 constexpr float kNearest = 0.3F;      // [m] nothing is asked nearer to the sensor's axis
-constexpr int kSpareRows = 8;
+/// Of an image that covers everything.
+constexpr auto kPixels = static_cast<std::size_t>(kColumns) * static_cast<std::size_t>(2.0F * kSteepest / kRowHeight + 1.0F);
 constexpr float kPi = 3.14159265F;
 
 /// atan2 to 1e-4 rad, the same on every machine; monotone within an octant, which is all a column needs.
@@ -62,7 +63,7 @@ DONEX_WIDE_LOOPS void projectAll(const Eigen::Vector3f* echoes, const std::uint8
 void SightImage::build(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo,
                        const Reading& reading) {
   collect(echoes, is_echo);
-  hit_.reserve(nearest_.capacity());
+  hit_.reserve(kPixels);
   hit_ = nearest_;
   if (!reading.careful) return;
   fillBetweenBeams(static_cast<int>(reading.largest_gap / static_cast<double>(kRowHeight)));
@@ -81,8 +82,7 @@ void SightImage::collect(const std::vector<Eigen::Vector3f>& echoes, const std::
   }
   first_row_ = highest < 0 ? 0 : lowest;
   rows_ = highest < 0 ? 0 : highest - lowest + 1;
-  // Room for a few rows more: the next scans may look a little farther up or down.
-  nearest_.reserve(static_cast<std::size_t>(kColumns * (rows_ + kSpareRows - rows_ % kSpareRows)));
+  nearest_.reserve(kPixels);
   nearest_.assign(static_cast<std::size_t>(kColumns * rows_), 0);
   for (std::size_t i = 0; i < count; ++i) {
     if (pixels_.rows[i] < 0) continue;
@@ -107,7 +107,7 @@ void SightImage::fillBetweenBeams(int largest_gap) {
 
 void SightImage::fillBetweenColumns() {
   // Only single columns: a sensor whose azimuth steps are a little wider than ours.
-  scratch_.reserve(nearest_.capacity());
+  scratch_.reserve(kPixels);
   scratch_ = nearest_;
   for (int c = 0; c < kColumns; ++c) {
     const Range* left = scratch_.data() + static_cast<std::ptrdiff_t>((c - 1) & (kColumns - 1)) * rows_;
@@ -164,6 +164,10 @@ SightImage::Sight SightImage::read(const std::vector<Range>& image, const Eigen:
   if (beyond > margin) return Sight::kFree;
   return beyond > -margin ? Sight::kSurface : Sight::kHidden;
 }
+
+double SightImage::workspaceBytes(double echoes) { return 2.0 * answerBytes() + roomFor(3.0 * sizeof(float) * echoes); }
+
+double SightImage::answerBytes() { return static_cast<double>(kPixels * sizeof(Range)); }
 
 std::size_t SightImage::memoryBytes() const {
   return (nearest_.capacity() + hit_.capacity() + scratch_.capacity()) * sizeof(Range) + pixels_.bytes();

@@ -1,4 +1,6 @@
 // After the first scans the paper's rule allocates nothing more, and takes the memory that was said before.
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "donex/core/detector.h"
@@ -63,16 +65,22 @@ TEST_P(SteadyState, TakesWhatWasSaid) {
 
 class DefaultSteadyState : public ::testing::TestWithParam<Method> {};
 
+/// Scans of a crossing, `beams` high.
+std::vector<Scan> crossing(int beams, double duration) {
+  simulation::SimulatorOptions options;
+  options.beams = beams;
+  options.duration = duration;
+  simulation::Simulator simulator("intersection", options);
+  std::vector<Scan> scans;
+  for (simulation::SimulatedScan scan; simulator.next(scan);) scans.push_back(scan.coreScan());
+  return scans;
+}
+
 /// Nothing is allocated on a stretch of road like one that was driven before, objects and all.
 TEST_P(DefaultSteadyState, AllocatesNothingAScan) {
   Config config;
   config.method = GetParam();
-  simulation::SimulatorOptions options;
-  options.beams = 32;
-  options.duration = 3.0;
-  simulation::Simulator simulator("intersection", options);
-  std::vector<Scan> scans;
-  for (simulation::SimulatedScan scan; simulator.next(scan);) scans.push_back(scan.coreScan());
+  const std::vector<Scan> scans = crossing(32, 3.0);
   const auto detector = makeDetector(config);
   EchoLabels labels;
   std::size_t dynamic = 0, before = 0;
@@ -86,6 +94,23 @@ TEST_P(DefaultSteadyState, AllocatesNothingAScan) {
   }
   EXPECT_EQ(testing::allocations() - before, 0U);
   EXPECT_GT(dynamic, 1000U);
+}
+
+TEST_P(DefaultSteadyState, TakesWhatWasSaid) {
+  Config config;
+  config.method = GetParam();
+  const std::vector<Scan> scans = crossing(64, 2.6);
+  const auto most = std::max_element(scans.begin(), scans.end(), [](const Scan& a, const Scan& b) {
+    return a.echoes.size() < b.echoes.size();
+  });
+  EchoLabels labels;
+  labels.resize(most->echoes.size());
+  const std::size_t before = testing::liveBytes();
+  const auto detector = makeDetector(config);
+  for (const Scan& scan : scans) detector->process(scan, labels);
+  const auto taken = static_cast<double>(testing::liveBytes() - before);
+  EXPECT_NEAR(memoryBound(config, most->echoes.size()), taken, 0.1 * taken);
+  EXPECT_NEAR(static_cast<double>(detector->memoryBytes()), taken, 0.1 * taken);
 }
 
 INSTANTIATE_TEST_SUITE_P(Both, DefaultSteadyState, ::testing::Values(Method::kDonex2d, Method::kDonex3d));

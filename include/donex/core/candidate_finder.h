@@ -24,6 +24,8 @@ class CandidateFinder {
   void release(const JudgedScan& scan, Candidates& candidates);
 
   std::size_t memoryBytes() const;
+  /// What memoryBytes will be, for scans of so many echoes [bytes], about.
+  static double bytesFor(double reach, const ObjectConfig& config, double echoes);
 
  private:
   struct Part {

@@ -33,6 +33,9 @@ class Clusters {
   int count() const { return count_; }
 
   std::size_t memoryBytes() const;
+  /// What memoryBytes will be, for scans of so many echoes of which `connected` take part [bytes], about: scenes differ in
+  /// how many cells echoes share.
+  static double bytesFor(double reach, const Settings& settings, double echoes, double connected);
 
  private:
   struct Cell {
@@ -45,6 +48,7 @@ class Clusters {
     const int column = column_at_[static_cast<std::size_t>(y * width_ + x)];
     return column == kNone ? kNone : cell_in_column_[static_cast<std::size_t>(column * layers_ + z)];
   }
+  static int widthOf(double reach, double cell);
   int& makeCell(int x, int y, int z);
   int rootOf(int cell);
   void fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,

@@ -26,6 +26,8 @@ class Ground {
   void heightsOf(const std::vector<Eigen::Vector3f>& echoes, std::vector<float>& heights) const;
 
   std::size_t memoryBytes() const;
+  /// What memoryBytes will be, for scans of so many echoes [bytes].
+  static double bytesFor(double reach, double echoes);
 
  private:
   struct Cell {
@@ -37,6 +39,7 @@ class Ground {
     float away;  ///< [m]
   };
 
+  static int widthOf(double reach);
   std::size_t indexOf(int x, int y) const {
     return static_cast<std::size_t>((y + width_ / 2) * width_ + x + width_ / 2);
   }

@@ -7,13 +7,13 @@
 
 namespace donex {
 
-/// Memory that region and voxel size ask for before the first scan [bytes]; what is held only where
-/// something is hit comes on top (Detector::memoryBytes tells it). Any configuration can be asked.
-double gridBytes(const Config& config);
-
-/// What the detector of a sound configuration takes for scans of up to `echoes` echoes [bytes]. For the paper's rule on
-/// a grid that scrolls, that is what Detector::memoryBytes is after the first scan, within 10 %, and it never grows.
-/// With evidence, voxels' records and objects come on top, as much as the surroundings have.
+/// What the detector of a sound configuration takes for scans of up to `echoes` echoes [bytes]; 0 echoes: before the
+/// first scan. Any configuration can be asked. On a grid that scrolls, that is what Detector::memoryBytes comes to, within
+/// 10 %: for the paper's rule exactly what it takes after the first scan, and it never grows; with evidence once as many
+/// scans are kept as may be, as long as surfaces fill no more bricks than the ground plan has (a wood does not). What a
+/// sensor does not cover is reserved, not used: the system gives less. For the methods for comparison, their dense grids
+/// alone.
+constexpr std::size_t kUsualScan = 120000;  // echoes; what a configuration is judged by
 double memoryBound(const Config& config, std::size_t echoes);
 
 }  // namespace donex

@@ -57,6 +57,8 @@ class Newness3d {
   const BirthMemory& memory() const { return memory_; }
   const GridWindow& window() const { return memory_.window(); }
   std::size_t memoryBytes() const { return memory_.memoryBytes(); }
+  /// What memoryBytes will be for a window of so many voxels [bytes], see BirthMemory.
+  static double bytesFor(const Eigen::Vector3d& extent) { return BirthMemory::bytesFor(extent); }
 
  private:
   bool touchesSettled(const Index3& voxel, const ScanClock& clock) const;
@@ -82,6 +84,8 @@ class Newness2d {
   void reset();
   const GridWindow& window() const { return window_; }
   std::size_t memoryBytes() const { return cells_.capacity() * sizeof(Cell); }
+  /// What memoryBytes will be for a window of so many voxels [bytes].
+  static double bytesFor(const Eigen::Vector3d& extent) { return extent.head<2>().prod() * sizeof(Cell); }
 
  private:
   struct Cell {

@@ -40,6 +40,8 @@ class SightHistory {
   bool empty() const { return kept_.empty(); }
   void reset();
   std::size_t memoryBytes() const;
+  /// What memoryBytes will be with a sensor of as many scans as are kept, of so many echoes [bytes].
+  static double bytesFor(double length, double spacing, double echoes);
 
  private:
   struct Kept {

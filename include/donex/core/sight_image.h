@@ -7,6 +7,8 @@
 
 #include <Eigen/Core>
 
+#include "donex/core/storage.h"
+
 namespace donex {
 
 /// The lines of sight of a scan as an image of ranges around the sensor (algorithm section 5, steps 1
@@ -45,6 +47,10 @@ class SightImage {
   Sight throughGaps(const Eigen::Vector3f& point, float margin) const;
 
   std::size_t memoryBytes() const;
+  /// What an image's answers take, whatever the sensor covers [bytes]: it is reserved, and only what it covers is used.
+  static double answerBytes();
+  /// What the newest image has besides for so many echoes [bytes].
+  static double workspaceBytes(double echoes);
 
  private:
   /// By echo: where it lies in the image; row -1 where nowhere.
@@ -53,9 +59,9 @@ class SightImage {
     std::vector<float> ranges;  ///< [kRangeStep]
 
     void resize(std::size_t count) {
-      columns.resize(count);
-      rows.resize(count);
-      ranges.resize(count);
+      resizeTo(columns, count);
+      resizeTo(rows, count);
+      resizeTo(ranges, count);
     }
     std::size_t bytes() const { return 3 * columns.capacity() * sizeof(float); }
   };
