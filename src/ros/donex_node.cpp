@@ -94,11 +94,9 @@ DonexNode::Implementation::Implementation(const ros::NodeHandle& nh, const ros::
       config_(readParameters(pnh)),
       pipeline_(config_, tf_, events()),
       diagnostics_(nh, pnh, pipeline_, usesOdometry(config_.motion.source)) {
-  constexpr std::size_t kUsualScan = 120000;  // echoes
-  ROS_INFO_STREAM_NAMED("donex", "memory asked for beforehand, for scans of "
+  ROS_INFO_STREAM_NAMED("donex", "memory that the grid takes for scans of "
                                      << kUsualScan << " echoes: " << std::lround(memoryBound(config_, kUsualScan) / 1e6)
-                                     << " MB (memory_limit " << config_.memory_limit
-                                     << " MB); with evidence, records of the voxels hit come on top");
+                                     << " MB at most (memory_limit " << config_.memory_limit << " MB)");
   // A sensor at rest asks tf nothing.
   const bool needs_tf = config_.motion.source != OdometrySource::kNone;
   if (needs_tf) tf_listener_ = std::make_unique<tf2_ros::TransformListener>(tf_, nh_);
