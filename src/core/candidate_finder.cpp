@@ -48,16 +48,12 @@ void CandidateFinder::find(const JudgedScan& scan, const std::vector<Expected>& 
 }
 
 void CandidateFinder::append(const JudgedScan& scan, Candidates& candidates) {
-  echoes_of_.assign(static_cast<std::size_t>(clusters_.count()), 0);
-  for (std::size_t i = 0; i < scan.points.size(); ++i) {
-    if (clusters_.of(i) != Clusters::kNone) ++echoes_of_[static_cast<std::size_t>(clusters_.of(i))];
-  }
   const std::size_t first = candidates.size();
-  candidate_of_.assign(echoes_of_.size(), kTooSmall);
-  for (std::size_t cluster = 0; cluster < echoes_of_.size(); ++cluster) {
-    if (echoes_of_[cluster] < static_cast<std::size_t>(config_.min_echoes)) continue;
-    candidate_of_[cluster] = candidates.size();
-    candidates.add(echoes_of_[cluster]);
+  candidate_of_.assign(static_cast<std::size_t>(clusters_.count()), kTooSmall);
+  for (int cluster = 0; cluster < clusters_.count(); ++cluster) {
+    if (clusters_.echoesIn(cluster) < static_cast<std::size_t>(config_.min_echoes)) continue;
+    candidate_of_[static_cast<std::size_t>(cluster)] = candidates.size();
+    candidates.add(clusters_.echoesIn(cluster));
   }
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
     if (clusters_.of(i) == Clusters::kNone) continue;
@@ -158,7 +154,7 @@ double CandidateFinder::bytesFor(double reach, const ObjectConfig& config, doubl
 
 std::size_t CandidateFinder::memoryBytes() const {
   return clusters_.memoryBytes() + fine_clusters_.memoryBytes() + standing_.capacity() * sizeof(Standing) +
-         parts_.capacity() * sizeof(Part) + (echoes_of_.capacity() + candidate_of_.capacity()) * sizeof(std::size_t);
+         parts_.capacity() * sizeof(Part) + candidate_of_.capacity() * sizeof(std::size_t);
 }
 
 }  // namespace donex

@@ -104,11 +104,15 @@ void Clusters::join(int cell) {
 void Clusters::number() {
   // Numbered in the order of their first echoes: independent of how the cells were joined.
   number_of_root_.assign(cells_.size(), kNone);
-  count_ = 0;
+  echoes_in_.clear();
   for (int& of : of_) {
     if (of == kNone) continue;
     int& number = number_of_root_[static_cast<std::size_t>(rootOf(of))];
-    if (number == kNone) number = count_++;
+    if (number == kNone) {
+      number = count();
+      echoes_in_.push_back(0);
+    }
+    ++echoes_in_[static_cast<std::size_t>(number)];
     of = number;
   }
 }
@@ -123,7 +127,7 @@ double Clusters::bytesFor(double reach, const Settings& settings, double echoes,
 std::size_t Clusters::memoryBytes() const {
   return (column_at_.capacity() + cell_in_column_.capacity() + of_.capacity() + number_of_root_.capacity()) *
              sizeof(int) +
-         cells_.capacity() * sizeof(Cell) + skirt_.capacity() * sizeof(skirt_[0]);
+         cells_.capacity() * sizeof(Cell) + echoes_in_.capacity() * sizeof(std::size_t) + skirt_.capacity() * sizeof(skirt_[0]);
 }
 
 }  // namespace donex

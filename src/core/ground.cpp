@@ -56,18 +56,29 @@ Ground::Ground(double reach) : width_(widthOf(reach)) {
   ground_.resize(cells, kNone);
   unseen_.resize(cells, 0.0F);
   outwards_.reserve(cells);
+  for (int y = -kReach; y <= kReach; ++y) {
+    for (int x = -kReach; x <= kReach; ++x) {
+      around_.push_back({x, y, y * width_ + x, kCell * std::sqrt(static_cast<float>(x * x + y * y)), 0.0F});
+    }
+  }
   for (int y = -(width_ / 2); y <= width_ / 2; ++y) {
     for (int x = -(width_ / 2); x <= width_ / 2; ++x) {
-      outwards_.push_back({static_cast<std::int16_t>(x), static_cast<std::int16_t>(y)});
+      outwards_.push_back({static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), neighboursNearerTo(x, y)});
     }
   }
   std::stable_sort(outwards_.begin(), outwards_.end(),
                    [](const Cell& a, const Cell& b) { return a.squaredDistance() < b.squaredDistance(); });
-  for (int y = -kReach; y <= kReach; ++y) {
-    for (int x = -kReach; x <= kReach; ++x) {
-      around_.push_back({x, y, kCell * std::sqrt(static_cast<float>(x * x + y * y))});
-    }
+}
+
+std::uint32_t Ground::neighboursNearerTo(int x, int y) const {
+  static_assert((2 * kReach + 1) * (2 * kReach + 1) <= 32);
+  std::uint32_t nearer = 0;
+  for (std::size_t i = 0; i < around_.size(); ++i) {
+    const int nx = x + around_[i].x, ny = y + around_[i].y;
+    const bool in_map = std::max(std::abs(nx), std::abs(ny)) <= width_ / 2;
+    if (in_map && nx * nx + ny * ny < x * x + y * y) nearer |= std::uint32_t{1} << i;
   }
+  return nearer;
 }
 
 Eigen::Vector2f Ground::offsetOf(const Cell& cell) { return kCell * Eigen::Vector2f(cell.x, cell.y); }
@@ -85,6 +96,10 @@ void Ground::estimate(const Eigen::Vector3f& sensor, const std::vector<Eigen::Ve
     lowest = std::min(lowest, echoes[i].z());
   }
   if (!findStart()) return;
+  // The slope around the sensor goes on.
+  for (Neighbour& by : around_) {
+    by.climb = kCell * (start_.x() * static_cast<float>(by.x) + start_.y() * static_cast<float>(by.y));
+  }
   for (const Cell& cell : outwards_) {
     const std::size_t i = indexOf(cell.x, cell.y);
     const Continuation expected = continueTo(cell);
@@ -131,19 +146,14 @@ Eigen::Vector3f Ground::fitStart(float reach) const {
 }
 
 Ground::Continuation Ground::continueTo(const Cell& cell) const {
-  const int half = width_ / 2;
-  const bool at_edge = std::max(std::abs(cell.x), std::abs(cell.y)) > half - kReach;
+  const std::size_t here = indexOf(cell.x, cell.y);
   float sum = 0.0F, weights = 0.0F, unseen = kNone;
-  for (const Neighbour& by : around_) {
-    const bool is_nearer = 2 * (cell.x * by.x + cell.y * by.y) + by.x * by.x + by.y * by.y < 0;
-    if (!is_nearer) continue;
-    if (at_edge && std::max(std::abs(cell.x + by.x), std::abs(cell.y + by.y)) > half) continue;
-    const std::size_t neighbour = indexOf(cell.x + by.x, cell.y + by.y);
+  for (std::uint32_t nearer = cell.nearer; nearer != 0; nearer &= nearer - 1) {
+    const Neighbour& by = around_[static_cast<std::size_t>(__builtin_ctz(nearer))];
+    const std::size_t neighbour = here + static_cast<std::size_t>(by.offset);
     const float since_seen = unseen_[neighbour] + by.away;
     const float weight = 1.0F / (since_seen * since_seen);
-    // The slope around the sensor goes on.
-    const float climb = kCell * (start_.x() * static_cast<float>(by.x) + start_.y() * static_cast<float>(by.y));
-    sum += weight * (ground_[neighbour] - climb);
+    sum += weight * (ground_[neighbour] - by.climb);
     weights += weight;
     unseen = std::min(unseen, since_seen);
   }

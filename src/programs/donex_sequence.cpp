@@ -60,9 +60,9 @@ void report(const Run& run, const Config& config, const DriveRun& drive, bool ha
              1e3 * quantile(drive.times(), 0.5), 1e3 * quantile(drive.times(), 0.99),
              1e3 * quantile(drive.cpuTimes(), 0.5));
   fmt::print("echoes a second: {:.1f} million\n", 1e-6 * static_cast<double>(run.echoes) / seconds);
-  fmt::print("peak memory: {}, of it the grid's {}\n", megabytes(peakMemory()), megabytes(drive.memoryBytes()));
   const std::size_t a_scan = run.echoes / std::max<std::size_t>(drive.times().size(), 1);
-  fmt::print("memory asked for beforehand, for scans of {} echoes: {}\n", a_scan,
+  fmt::print("peak memory: {} used; set aside for the grid: {}, said beforehand for scans of {} echoes: {}\n",
+             megabytes(peakMemory()), megabytes(drive.memoryBytes()), a_scan,
              megabytes(static_cast<std::size_t>(memoryBound(config, a_scan))));
   if (run.evaluation.scans() > 0) {
     fmt::print("\n{}", formatEvaluations({{"this run", &run.evaluation}}));

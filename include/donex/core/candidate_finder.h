@@ -44,7 +44,6 @@ class CandidateFinder {
   Clusters clusters_, fine_clusters_;
   std::vector<Standing> standing_;
   std::vector<Part> parts_;                ///< by fine cluster
-  std::vector<std::size_t> echoes_of_;     ///< by cluster: how many
   std::vector<std::size_t> candidate_of_;  ///< by cluster: its number
 };
 

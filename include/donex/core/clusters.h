@@ -30,11 +30,12 @@ class Clusters {
   static constexpr int kNone = -1;
   /// Cluster of an echo, 0 to count() - 1, or kNone.
   int of(std::size_t echo) const { return of_[echo]; }
-  int count() const { return count_; }
+  int count() const { return static_cast<int>(echoes_in_.size()); }
+  std::size_t echoesIn(int cluster) const { return echoes_in_[static_cast<std::size_t>(cluster)]; }
 
   std::size_t memoryBytes() const;
-  /// What memoryBytes will be, for scans of so many echoes of which `connected` take part [bytes], about: scenes differ in
-  /// how many cells echoes share.
+  /// What memoryBytes will be, for scans of so many echoes of which `connected` take part [bytes], about: scenes differ
+  /// in how many cells echoes share.
   static double bytesFor(double reach, const Settings& settings, double echoes, double connected);
 
  private:
@@ -65,7 +66,7 @@ class Clusters {
   std::vector<int> of_;
   std::vector<std::array<int, 3>> skirt_;  ///< echo, x, y
   std::vector<int> number_of_root_;
-  int count_ = 0;
+  std::vector<std::size_t> echoes_in_;  ///< by cluster
 };
 
 }  // namespace donex

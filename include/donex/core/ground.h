@@ -1,6 +1,7 @@
 // The local ground: which echoes lie on it (algorithm section 5, step 5).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -31,12 +32,15 @@ class Ground {
 
  private:
   struct Cell {
-    std::int16_t x, y;  ///< from the sensor's
+    std::int16_t x, y;     ///< from the sensor's
+    std::uint32_t nearer;  ///< which neighbours are nearer to the sensor, and in the map: a bit each
     int squaredDistance() const { return x * x + y * y; }
   };
   struct Neighbour {
     int x, y;
-    float away;  ///< [m]
+    std::ptrdiff_t offset;  ///< of its index
+    float away;             ///< [m]
+    float climb;            ///< how far the plane around the sensor rises to it [m]
   };
 
   static int widthOf(double reach);
@@ -47,6 +51,8 @@ class Ground {
   static Eigen::Vector2f offsetOf(const Cell& cell);  ///< from the sensor's cell [m]
   bool findStart();                                   ///< false where no echo is near
   Eigen::Vector3f fitStart(float reach) const;
+  /// As Cell::nearer.
+  std::uint32_t neighboursNearerTo(int x, int y) const;
   /// Height of the plane around the sensor, `offset` [m] from there.
   float startAt(const Eigen::Vector2f& offset) const { return start_.head<2>().dot(offset) + start_.z(); }
   /// What the ground of nearer cells lets expect.
