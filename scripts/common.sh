@@ -25,6 +25,7 @@ fi
 export XAUTHORITY=${XAUTHORITY:-${HOME:-}/.Xauthority}
 export HOME=$build/home ROS_HOME=$build/ros_home
 export XDG_RUNTIME_DIR=${XDG_RUNTIME_DIR:-$build/home/runtime}
+# shellcheck disable=SC2174  # the folders above need no protection
 mkdir -p -m 700 "$HOME" "$build/home/runtime"
 [ -n "${CCACHE_DIR:-}" ] || export CCACHE_DIR=$build/ccache CCACHE_MAXSIZE=1G
 export CCACHE_NOHASHDIR=1 CCACHE_BASEDIR=$repository
