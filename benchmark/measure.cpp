@@ -1,41 +1,21 @@
 #include "measure.h"
 
-#include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <ctime>
+#include "donex/core/timing.h"
 
 namespace donex::benchmark {
 namespace {
 
 constexpr std::size_t kWarmUp = 2;
 
-double cpuMilliseconds() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
-}
-
-double wallMilliseconds() {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-double quantile(std::vector<double> values, double fraction) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  const double rank = std::ceil(fraction * static_cast<double>(values.size()));
-  return values[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
-}
-
 struct Times {
   std::vector<double> cpu, wall;  ///< one a scan [ms]
 
   template <class Work>
   void add(Work&& work) {
-    const double wall_start = wallMilliseconds(), cpu_start = cpuMilliseconds();
+    const double wall_start = wallTime(), cpu_start = cpuTime();
     work();
-    cpu.push_back(cpuMilliseconds() - cpu_start);
-    wall.push_back(wallMilliseconds() - wall_start);
+    cpu.push_back(1e3 * (cpuTime() - cpu_start));
+    wall.push_back(1e3 * (wallTime() - wall_start));
   }
   Measured summary() const {
     return {quantile(cpu, 0.5), quantile(cpu, 0.99), quantile(cpu, 0.0), quantile(wall, 0.5)};

@@ -1,4 +1,4 @@
-#include "ground_truth.h"
+#include "donex/bag/ground_truth.h"
 
 #include <algorithm>
 #include <cstring>

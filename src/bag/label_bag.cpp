@@ -10,9 +10,9 @@
 #include <tf2_msgs/TFMessage.h>
 
 #include "donex/bag/bag_file.h"
+#include "donex/bag/ground_truth.h"
 #include "donex/core/whole_drive.h"
-#include "donex/io/drive_run.h"
-#include "ground_truth.h"
+#include "donex/io/sequence.h"
 #include "topics.h"
 
 namespace donex {

@@ -7,6 +7,7 @@
 #include <boost/make_shared.hpp>
 #include <fmt/format.h>
 #include <nav_msgs/Odometry.h>
+#include <tf2_eigen/tf2_eigen.h>
 #include <tf2_msgs/TFMessage.h>
 
 #include "donex/bag/bag_file.h"
@@ -21,34 +22,15 @@ constexpr const char* kSensorFrame = "velodyne";
 /// Between messages of the same stamp: at equal times a bag's reader takes any order.
 const ros::Duration kStep(0, 1000);
 
-geometry_msgs::Quaternion toMessage(const Eigen::Quaterniond& q) {
-  geometry_msgs::Quaternion message;
-  message.x = q.x();
-  message.y = q.y();
-  message.z = q.z();
-  message.w = q.w();
-  return message;
-}
-
-/// Point or Vector3.
-template <class Message>
-Message toMessage(const Eigen::Vector3d& v) {
-  Message message;
-  message.x = v.x();
-  message.y = v.y();
-  message.z = v.z();
-  return message;
-}
-
 nav_msgs::Odometry toOdometry(const OdometryPoint& point) {
   nav_msgs::Odometry message;
   message.header.stamp = ros::Time(point.stamp);
   message.header.frame_id = kOdomFrame;
   message.child_frame_id = kBaseFrame;
-  message.pose.pose.position = toMessage<geometry_msgs::Point>(point.odom_from_base.position);
-  message.pose.pose.orientation = toMessage(point.odom_from_base.orientation);
-  message.twist.twist.linear = toMessage<geometry_msgs::Vector3>(point.twist.linear);
-  message.twist.twist.angular = toMessage<geometry_msgs::Vector3>(point.twist.angular);
+  message.pose.pose.position = tf2::toMsg(point.odom_from_base.position);
+  message.pose.pose.orientation = tf2::toMsg(point.odom_from_base.orientation);
+  tf2::toMsg(point.twist.linear, message.twist.twist.linear);
+  tf2::toMsg(point.twist.angular, message.twist.twist.angular);
   return message;
 }
 
@@ -59,8 +41,8 @@ tf2_msgs::TFMessage toTransform(double stamp, const std::string& parent, const s
   transform.header.stamp = ros::Time(stamp);
   transform.header.frame_id = parent;
   transform.child_frame_id = child;
-  transform.transform.translation = toMessage<geometry_msgs::Vector3>(pose.position);
-  transform.transform.rotation = toMessage(pose.orientation);
+  tf2::toMsg(pose.position, transform.transform.translation);
+  transform.transform.rotation = tf2::toMsg(pose.orientation);
   return message;
 }
 

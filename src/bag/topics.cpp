@@ -15,8 +15,9 @@ using Topics = std::map<std::string, std::string>;  // topic -> type
 /// A topic recorded from several publishers has several connections.
 Topics topicsOf(rosbag::View& view) {
   Topics topics;
-  for (const rosbag::ConnectionInfo* connection : view.getConnections())
+  for (const rosbag::ConnectionInfo* connection : view.getConnections()) {
     topics[connection->topic] = connection->datatype;
+  }
   return topics;
 }
 

@@ -18,8 +18,7 @@ std::optional<Labels> readPrediction(ScoredPrediction& prediction, std::size_t i
   try {
     Labels labels = readLabels(file);
     if (labels.size() == echoes) return labels;
-    prediction.faults.add(
-        fmt::format("{}: {} labels for {} echoes, not scored", file.string(), labels.size(), echoes));
+    prediction.faults.add(fmt::format("{}: {} labels for {} echoes, not scored", file.string(), labels.size(), echoes));
   } catch (const DataError& error) {
     prediction.faults.add(std::string(error.what()) + ", not scored");
   }
@@ -66,14 +65,14 @@ SequenceComparison compareOnSequence(const SequenceReader& sequence, std::size_t
     comparison.predictions.push_back({name, labels, Evaluation(), readRunFigures(labels), Faults()});
   }
   const ObjectSpeeds speeds(sequence);
-  std::pair<bool, std::size_t> best{false, 0};  // in the second half, moving echoes
+  std::pair<bool, std::size_t> best{false, 0};  // whether it moves in the second half, moving echoes
   std::optional<std::size_t> best_scan;
   for (std::size_t i = 0; i < scans; ++i) {
     if (sequence.hasLabels(i) && Evaluation().scores(i)) {
       const Labels truth = sequence.labels(i);
       scoreScan(sequence, i, speeds, truth, comparison.predictions);
       const auto moving = static_cast<std::size_t>(std::count_if(truth.begin(), truth.end(), isMoving));
-      const std::pair own(2 * i >= scans, moving);
+      const std::pair own(moving > 0 && 2 * i >= scans, moving);
       if (!best_scan || own > best) best = own, best_scan = i;
     }
     progress();

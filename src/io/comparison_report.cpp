@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "donex/io/comparison.h"
 #include "donex/io/sequence.h"
+#include "donex/io/whole_file.h"
 #include "report_page.h"
 
 namespace donex {
@@ -158,6 +158,8 @@ std::string csvLine(const std::string& start, const std::string& group, const st
 
 std::string toJson(const Comparison& comparison) { return documentOf(comparison, false).dump(2) + '\n'; }
 
+std::string toJson(const ScoredPrediction& prediction) { return predictionOf(prediction).dump(); }
+
 std::string toCsv(const Comparison& comparison) {
   std::string text =
       "sequence,prediction,group,member,tp,fp,fn,tn,iou,precision,recall,objects_found,objects,median_time_s,"
@@ -190,20 +192,8 @@ std::string toHtml(const Comparison& comparison) {
   return page;
 }
 
-void writeReport(const fs::path& file, const std::string& text) {
-  const fs::path temporary = fmt::format("{}.{}.part", file.string(), getpid());
-  std::ofstream stream(temporary, std::ios::binary);
-  stream << text;
-  stream.close();
-  std::error_code error;
-  if (stream) fs::rename(temporary, file, error);
-  if (stream && !error) return;
-  fs::remove(temporary, error);
-  throw DataError(file.string() + ": cannot be written");
-}
-
 void writeRunFigures(const fs::path& directory, const RunFigures& figures) {
-  writeReport(directory / "run.json", figuresOf(figures).dump(2) + '\n');
+  writeWhole(directory / "run.json", figuresOf(figures).dump(2) + '\n');
 }
 
 std::optional<RunFigures> readRunFigures(const fs::path& directory) {
@@ -211,9 +201,9 @@ std::optional<RunFigures> readRunFigures(const fs::path& directory) {
   if (!stream) return std::nullopt;
   try {
     const json figures = json::parse(stream);
-    return RunFigures{figures.at("method"),          figures.at("scans"),         figures.at("median_time"),
-                      figures.at("p99_time"),        figures.at("median_cpu_time"), figures.at("mean_cpu_time"),
-                      figures.at("peak_memory"),     figures.at("method_memory")};
+    return RunFigures{figures.at("method"),      figures.at("scans"),           figures.at("median_time"),
+                      figures.at("p99_time"),    figures.at("median_cpu_time"), figures.at("mean_cpu_time"),
+                      figures.at("peak_memory"), figures.at("method_memory")};
   } catch (const json::exception& error) {
     throw DataError(fmt::format("{}: {}", (directory / "run.json").string(), error.what()));
   }

@@ -1,20 +1,8 @@
 #include "donex/io/drive_run.h"
 
-#include <chrono>
-#include <ctime>
+#include "donex/core/timing.h"
 
 namespace donex {
-namespace {
-
-double cpuTime() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-double wallTime() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-}  // namespace
 
 DriveRun::DriveRun(const Config& config) {
   if (needsWholeDrive(config.method)) {
@@ -45,14 +33,6 @@ void DriveRun::run(const SequenceReader& sequence, std::size_t scans, const Sink
       progress();
     }
   } while (whole_ != nullptr && whole_->nextPass());
-}
-
-std::vector<std::uint32_t> asSemanticKitti(const EchoLabels& labels) {
-  std::vector<std::uint32_t> result(labels.dynamic.size(), kLabelStatic);
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    if (labels.dynamic[i] != 0) result[i] = kLabelMoving;
-  }
-  return result;
 }
 
 }  // namespace donex

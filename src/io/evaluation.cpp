@@ -2,21 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "donex/io/object_speeds.h"
 #include "donex/io/sequence.h"
+#include "ratio.h"
 
 namespace donex {
-namespace {
-
-double ratio(std::uint64_t part, std::uint64_t whole) {
-  if (whole == 0) return std::numeric_limits<double>::quiet_NaN();
-  return static_cast<double>(part) / static_cast<double>(whole);
-}
-
-}  // namespace
 
 void Counts::add(bool truly_moving, bool said_moving) {
   std::uint64_t& count = truly_moving ? (said_moving ? true_positives : false_negatives)

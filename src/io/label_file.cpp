@@ -1,9 +1,18 @@
 #include <fstream>
 
 #include "donex/io/sequence.h"
+#include "donex/io/whole_file.h"
 
 namespace donex {
 namespace fs = std::filesystem;
+
+std::vector<std::uint32_t> asSemanticKitti(const EchoLabels& labels) {
+  std::vector<std::uint32_t> result(labels.dynamic.size(), kLabelStatic);
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    if (labels.dynamic[i] != 0) result[i] = kLabelMoving;
+  }
+  return result;
+}
 
 std::vector<std::uint32_t> readLabels(const fs::path& file) {
   std::error_code error;
@@ -20,17 +29,10 @@ std::vector<std::uint32_t> readLabels(const fs::path& file) {
 }
 
 void writeLabels(const fs::path& file, const std::vector<std::uint32_t>& labels) {
-  const fs::path temporary = file.string() + ".part";
-  std::ofstream stream(temporary, std::ios::binary);
-  stream.write(reinterpret_cast<const char*>(labels.data()),
-               static_cast<std::streamsize>(labels.size() * sizeof(std::uint32_t)));
-  stream.close();
-  std::error_code error;
-  if (stream) fs::rename(temporary, file, error);
-  if (stream && !error) return;
-  std::error_code ignored;  // the first error is the one to tell
-  fs::remove(temporary, ignored);
-  throw DataError(file.string() + ": cannot be written");
+  WholeFile whole(file);
+  whole.stream().write(reinterpret_cast<const char*>(labels.data()),
+                       static_cast<std::streamsize>(labels.size() * sizeof(std::uint32_t)));
+  whole.commit();
 }
 
 }  // namespace donex

@@ -1,17 +1,10 @@
 #include "donex/io/map_score.h"
 
 #include <cmath>
-#include <limits>
+
+#include "ratio.h"
 
 namespace donex {
-namespace {
-
-double ratio(std::uint64_t part, std::uint64_t whole) {
-  if (whole == 0) return std::numeric_limits<double>::quiet_NaN();
-  return static_cast<double>(part) / static_cast<double>(whole);
-}
-
-}  // namespace
 
 void MapScore::add(const Eigen::Vector3d& point, bool is_moving, bool is_kept) {
   const Index3 index = (point / voxel_size_).array().floor().cast<int>();

@@ -154,8 +154,9 @@ void SequenceReader::readTimes(Faults& faults) {
   const auto lines = readLines(file, faults);
   if (!lines) return;
   compareCount(file, lines->size(), echoes_.size(), faults, notes_);
-  for (std::size_t i = 0; i < std::min(lines->size(), echoes_.size()); ++i)
+  for (std::size_t i = 0; i < std::min(lines->size(), echoes_.size()); ++i) {
     addTime((*lines)[i], place(file, i + 1), faults);
+  }
 }
 
 void SequenceReader::addTime(const std::string& line, const std::string& where, Faults& faults) {

@@ -3,16 +3,11 @@
 #include <fmt/format.h>
 
 #include "donex/io/sequence.h"
+#include "donex/io/whole_file.h"
 
 namespace donex {
 namespace fs = std::filesystem;
 namespace {
-
-void createDirectory(const fs::path& directory) {
-  std::error_code error;
-  fs::create_directories(directory, error);
-  if (error) throw DataError(fmt::format("{}: cannot be created: {}", directory.string(), error.message()));
-}
 
 void writeCloud(const fs::path& file, const SequenceScan& scan) {
   std::vector<Eigen::Vector4f> rows(scan.echoes.size());

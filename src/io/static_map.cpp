@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "donex/io/whole_file.h"
+
 namespace donex {
 namespace {
 
@@ -104,26 +106,21 @@ std::size_t StaticMap::writeTile(Tile& tile, std::ostream& stream) const {
 }
 
 std::size_t StaticMap::write() {
-  const fs::path temporary = fmt::format("{}.{}.part", file_.string(), getpid());
-  std::ofstream stream(temporary, std::ios::binary);
-  stream << header(0);
+  WholeFile whole(file_);
+  whole.stream() << header(0);
   std::size_t points = 0;
   for (const auto& entry : put_away_) tiles_[entry.first];
   while (!tiles_.empty()) {
     const auto tile = tiles_.begin();
     if (put_away_.count(tile->first) != 0) takeBack(tile->first, tile->second);
-    points += writeTile(tile->second, stream);
+    points += writeTile(tile->second, whole.stream());
     tiles_.erase(tile);
   }
   voxels_ = 0;
-  stream.seekp(0);
-  stream << header(points);
-  stream.close();
-  std::error_code error;
-  if (stream) fs::rename(temporary, file_, error);
-  if (stream && !error) return points;
-  fs::remove(temporary, error);
-  throw DataError(file_.string() + ": cannot be written");
+  whole.stream().seekp(0);
+  whole.stream() << header(points);
+  whole.commit();
+  return points;
 }
 
 }  // namespace donex

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "donex/io/comparison.h"
+#include "donex/io/whole_file.h"
 #include "program.h"
 
 namespace donex {
@@ -29,10 +30,16 @@ struct Contender {
   Config config;
 };
 
-Config configOf(Method method, bool is_paper) {
-  Config config = is_paper ? paperConfig(method) : Config();
+Config defaultOf(Method method) {
+  Config config;
   config.method = method;
-  if (is_paper) config.compensation = Compensation::kResample;  // as config/paper_3d.yaml has it
+  return config;
+}
+
+/// As config/paper_3d.yaml has it.
+Config paperOf(Method method) {
+  Config config = paperConfig(method);
+  config.compensation = Compensation::kResample;
   return config;
 }
 
@@ -40,22 +47,21 @@ std::vector<Contender> allContenders() {
   const char* const kPaper = "Stralau & Fu, DONEX";
   return {
       {{"donex_3d", "3D grid with evidence and objects: this package's default", kPaper, true},
-       configOf(Method::kDonex3d, false)},
-      {{"donex_2d", "2D grid with evidence and objects", kPaper, true}, configOf(Method::kDonex2d, false)},
-      {{"paper_3d", "the paper's 3D rule alone, see-through by traversal", kPaper, true},
-       configOf(Method::kDonex3d, true)},
+       defaultOf(Method::kDonex3d)},
+      {{"donex_2d", "2D grid with evidence and objects", kPaper, true}, defaultOf(Method::kDonex2d)},
+      {{"paper_3d", "the paper's 3D rule alone, see-through by traversal", kPaper, true}, paperOf(Method::kDonex3d)},
       {{"paper_3d_zbuffer", "the same, see-through by a z-buffer", "Hu & Li 2012, set aside by the paper", true},
-       configOf(Method::kDonex3dZBuffer, true)},
-      {{"paper_2d", "the paper's 2D rule alone, no line of sight", kPaper, true}, configOf(Method::kDonex2d, true)},
+       paperOf(Method::kDonex3dZBuffer)},
+      {{"paper_2d", "the paper's 2D rule alone, no line of sight", kPaper, true}, paperOf(Method::kDonex2d)},
       {{"motion_voxel_grid", "ground planes by region, static and dynamic counters of voxels", "Asvadi et al. 2016",
         true},
-       configOf(Method::kMotionVoxelGrid, false)},
+       defaultOf(Method::kMotionVoxelGrid)},
       {{"ray_tracing", "mesh of the scan before, probability, Dempster-Shafer", "Lee, Kim & Jo 2019", true},
-       configOf(Method::kRayTracing, false)},
+       defaultOf(Method::kRayTracing)},
       {{"range_residual", "residual image of two scans, a threshold", "Chen et al. 2021, without learning", true},
-       configOf(Method::kRangeResidual, false)},
+       defaultOf(Method::kRangeResidual)},
       {{"peopleremover", "what any line of sight of the drive sees through", "Schauer & Nuechter 2018", false},
-       configOf(Method::kPeopleremover, false)}};
+       defaultOf(Method::kPeopleremover)}};
 }
 
 std::vector<Contender> chooseContenders(const std::vector<std::string>& names) {
@@ -71,10 +77,6 @@ std::vector<Contender> chooseContenders(const std::vector<std::string>& names) {
     chosen.push_back(*found);
   }
   return chosen;
-}
-
-std::size_t scansOf(const SequenceReader& sequence, std::size_t frames) {
-  return frames == 0 ? sequence.size() : std::min(frames, sequence.size());
 }
 
 /// Runs `work` in a process of its own, so that peak memory is that of one method; throws where it failed.
@@ -102,7 +104,7 @@ void inOwnProcess(const std::string& what, const std::function<void()>& work) {
 /// Labels where `with_labels`, and run.json.
 void runContender(const SequenceReader& sequence, std::size_t scans, const Config& config, const fs::path& out,
                   bool with_labels) {
-  fs::create_directories(out);
+  createDirectory(out);
   DriveRun drive(config);
   const auto keep = [&](std::size_t i, const Scan&, const EchoLabels& labels) {
     if (with_labels) writeLabels(out / (scanName(i) + ".label"), asSemanticKitti(labels));
@@ -142,7 +144,7 @@ void fillTable1(Comparison& comparison, const std::string& directory, const std:
   const SequenceReader sequence(directory);
   const std::size_t scans = scansOf(sequence, 30);
   const auto measure = [&](Method method, double voxel_size) {
-    Config config = configOf(method, true);
+    Config config = paperOf(method);
     config.voxel_size = voxel_size;
     config.region = {0.0, 75.0, -25.0, 25.0, -4.0, 6.0};
     const fs::path place = fs::path(out) / "table_1" / fmt::format("{}_{}", nameOf(method), voxel_size);
@@ -166,9 +168,9 @@ void fillTable1(Comparison& comparison, const std::string& directory, const std:
 }
 
 void writeReports(const Comparison& comparison, const fs::path& out) {
-  writeReport(out / "report.csv", toCsv(comparison));
-  writeReport(out / "report.json", toJson(comparison));
-  writeReport(out / "report.html", toHtml(comparison));
+  writeWhole(out / "report.csv", toCsv(comparison));
+  writeWhole(out / "report.json", toJson(comparison));
+  writeWhole(out / "report.html", toHtml(comparison));
   for (const SequenceComparison& sequence : comparison.sequences) {
     fmt::print("\n{}\n{}", sequence.name, formatEvaluations(sequence.columns()));
   }
@@ -183,11 +185,9 @@ void run(const Arguments& arguments) {
   for (const std::string& sequence : arguments.sequences) comparison.command += " " + sequence;
   for (const Contender& contender : contenders) comparison.methods.push_back(contender.note);
   for (const std::string& directory : arguments.sequences) {  // all faults of the input before the first hour of work
-    if (!SequenceReader(directory).hasLabels()) throw DataError(directory + "/labels: holds no labels to score by");
+    requireTruth(SequenceReader(directory));
   }
-  std::error_code error;
-  fs::create_directories(arguments.out, error);
-  if (error) throw DataError(fmt::format("{}: cannot be created: {}", arguments.out, error.message()));
+  createDirectory(arguments.out);
   std::set<std::string> names;
   for (const std::string& directory : arguments.sequences) {
     comparison.sequences.push_back(compare(directory, nameOf(directory, names), arguments, contenders));

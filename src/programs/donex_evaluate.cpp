@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "donex/io/comparison.h"
+#include "donex/io/whole_file.h"
 #include "program.h"
 
 namespace donex {
@@ -33,19 +34,16 @@ void writeReports(const CLI::App& app, const Arguments& arguments, const Sequenc
   comparison.command = app.get_name() + ' ' + arguments.sequence;
   for (const std::string& prediction : arguments.predictions) comparison.command += ' ' + prediction;
   comparison.sequences = {sequence};
-  if (!arguments.csv.empty()) writeReport(arguments.csv, toCsv(comparison));
-  if (!arguments.json.empty()) writeReport(arguments.json, toJson(comparison));
-  if (!arguments.html.empty()) writeReport(arguments.html, toHtml(comparison));
+  if (!arguments.csv.empty()) writeWhole(arguments.csv, toCsv(comparison));
+  if (!arguments.json.empty()) writeWhole(arguments.json, toJson(comparison));
+  if (!arguments.html.empty()) writeWhole(arguments.html, toHtml(comparison));
 }
 
 void run(const CLI::App& app, const Arguments& arguments) {
-  const SequenceReader sequence(arguments.sequence);
-  for (const std::string& note : sequence.notes()) warn(app, note);
-  if (!sequence.hasLabels()) {
-    throw DataError((sequence.directory() / "labels").string() + ": holds no labels to score by");
-  }
+  const SequenceReader sequence = openSequence(app, arguments.sequence);
+  requireTruth(sequence);
   const auto directories = directoriesOf(arguments);
-  const std::size_t scans = arguments.frames == 0 ? sequence.size() : std::min(arguments.frames, sequence.size());
+  const std::size_t scans = scansOf(sequence, arguments.frames);
   SequenceComparison comparison;
   {
     ProgressBar progress(scans);

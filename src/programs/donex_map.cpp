@@ -8,6 +8,7 @@
 #include "donex/io/static_map.h"
 #include "program.h"
 #ifdef DONEX_WITH_BAGS
+#include "donex/bag/ground_truth.h"
 #include "donex/bag/label_bag.h"
 #endif
 
@@ -18,10 +19,10 @@ namespace fs = std::filesystem;
 
 struct Arguments {
   std::string in, out;
-  double map_voxel = 0.1;  ///< [m]
-  double range = 50.0;     ///< [m]
+  double map_voxel = 0.1;    ///< [m]
+  double range = 50.0;       ///< [m]
   std::size_t memory = 500;  ///< [MB]
-  std::size_t frames = 0;  ///< 0: all
+  std::size_t frames = 0;    ///< 0: all
   bool compare = false;
   std::string points, odom;
 };
@@ -71,12 +72,9 @@ class Mapper {
 };
 
 void mapSequence(const CLI::App& app, const Arguments& arguments, const Config& config, Mapper& mapper) {
-  const SequenceReader sequence(arguments.in);
-  for (const std::string& note : sequence.notes()) warn(app, note);
-  if (arguments.compare && !sequence.hasLabels()) {
-    throw DataError((sequence.directory() / "labels").string() + ": holds no labels to compare with");
-  }
-  const std::size_t scans = arguments.frames == 0 ? sequence.size() : std::min(arguments.frames, sequence.size());
+  const SequenceReader sequence = openSequence(app, arguments.in);
+  if (arguments.compare) requireTruth(sequence);
+  const std::size_t scans = scansOf(sequence, arguments.frames);
   DriveRun drive(config);
   ProgressBar progress(scans * drive.passes());
   const auto take = [&](std::size_t i, const Scan& scan, const EchoLabels& labels) {
@@ -93,8 +91,11 @@ void mapBag(const CLI::App& app, const Arguments& arguments, const Config& confi
   options.odom = arguments.odom;
   options.config = config;
   std::optional<ProgressBar> progress;
+  bool has_truth = false;
   const auto take = [&](const LabeledScan& scan, const ros::Time&, std::size_t) {
-    mapper.add(scan.scan, scan.labels, {});
+    const auto truth = arguments.compare ? truthOf(*scan.cloud, scan.layout) : std::vector<std::uint32_t>();
+    has_truth = has_truth || !truth.empty();
+    mapper.add(scan.scan, scan.labels, truth);
   };
   const auto summary = judgeBag({arguments.in}, options, take, [&](std::size_t, std::size_t total) {
     if (!progress) progress.emplace(total);
@@ -102,6 +103,9 @@ void mapBag(const CLI::App& app, const Arguments& arguments, const Config& confi
   });
   progress.reset();
   for (const std::string& remark : summary.remarks) warn(app, remark);
+  if (!arguments.compare || has_truth) return;
+  throw DataError(
+      fmt::format("{}: no cloud on {} has a field label (UINT32) to score by", arguments.in, summary.points));
 }
 #endif
 
@@ -111,9 +115,7 @@ void run(const CLI::App& app, const Arguments& arguments, const Config& config) 
   Mapper mapper(arguments);
   const bool is_bag = fs::path(arguments.in).extension() == ".bag";
 #ifdef DONEX_WITH_BAGS
-  if (is_bag && (arguments.compare || arguments.frames != 0)) {
-    throw ArgumentError("--compare and --frames are for sequences: a bag holds no labels");
-  }
+  if (is_bag && arguments.frames != 0) throw ArgumentError("--frames is for sequences");
   is_bag ? mapBag(app, arguments, config, mapper) : mapSequence(app, arguments, config, mapper);
 #else
   if (is_bag) throw ArgumentError(arguments.in + ": this donex_map was built without ROS and reads no bags");
@@ -137,7 +139,8 @@ int main(int argc, char** argv) {
   app.add_option("--memory", arguments.memory, "most memory that the map's voxels take [MB], by default 500")
       ->check(CLI::PositiveNumber);
   app.add_option("--frames", arguments.frames, "only the first N scans of a sequence")->check(CLI::PositiveNumber);
-  app.add_flag("--compare", arguments.compare, "score the map by the sequence's labels: PR, RR, F1, SA, DA, AA");
+  app.add_flag("--compare", arguments.compare,
+               "score the map by the labels of the sequence or of the bag's clouds: PR, RR, F1, SA, DA, AA");
   app.add_option("--points", arguments.points, "topic of a bag's clouds; needed where there are several");
   app.add_option("--odom", arguments.odom, "topic of a bag's odometry; needed where there are several");
   const donex::ConfigOptions config(app);

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include "donex/core/memory_bound.h"
+#include "donex/core/timing.h"
 #include "donex/io/comparison.h"
 #include "donex/io/sequence.h"
+#include "donex/io/whole_file.h"
 #include "program.h"
 
 namespace donex {
@@ -32,9 +34,7 @@ void prepareOutput(const Arguments& arguments) {
   if (out == fs::weakly_canonical(fs::path(arguments.sequence) / "labels")) {
     throw ArgumentError("--out " + arguments.out + " holds the ground truth, it would be overwritten");
   }
-  std::error_code error;
-  fs::create_directories(out, error);
-  if (error) throw DataError(fmt::format("{}: cannot be created: {}", arguments.out, error.message()));
+  createDirectory(arguments.out);
 }
 
 Run runSequence(const SequenceReader& sequence, std::size_t scans, DriveRun& drive, const std::string& out) {
@@ -73,10 +73,9 @@ void report(const Run& run, const Config& config, const DriveRun& drive, bool ha
 
 void run(const CLI::App& app, const Arguments& arguments, const ConfigOptions& options) {
   const Config config = options.config();
-  const SequenceReader sequence(arguments.sequence);
-  for (const std::string& note : sequence.notes()) warn(app, note);
+  const SequenceReader sequence = openSequence(app, arguments.sequence);
   prepareOutput(arguments);
-  const std::size_t scans = arguments.frames == 0 ? sequence.size() : std::min(arguments.frames, sequence.size());
+  const std::size_t scans = scansOf(sequence, arguments.frames);
   DriveRun drive(config);
   const Run run = runSequence(sequence, scans, drive, arguments.out);
   report(run, config, drive, sequence.hasLabels());

@@ -16,8 +16,7 @@ struct Arguments {
 
 void run(const CLI::App& app, Arguments& arguments) {
   arguments.options.compression = parseCompression(arguments.compression);
-  const SequenceReader sequence(arguments.sequence);
-  for (const std::string& note : sequence.notes()) warn(app, note);
+  const SequenceReader sequence = openSequence(app, arguments.sequence);
   ProgressBar progress(sequence.size());
   const auto summary = writeSequenceBag(sequence, arguments.file, arguments.options, [&] { progress.advance(); });
   fmt::print("{} clouds on /points, {} odometry messages on /odom, tf odom <- base_link <- velodyne\n", summary.clouds,

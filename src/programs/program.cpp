@@ -1,7 +1,6 @@
 #include "program.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <numeric>
 #include <sstream>
@@ -10,6 +9,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "donex/core/timing.h"
 #include "donex/io/config_file.h"
 
 namespace donex {
@@ -56,6 +56,21 @@ int runProgram(CLI::App& app, int argc, char** argv, const std::function<void()>
 
 void warn(const CLI::App& app, const std::string& text) { fmt::print(stderr, "{}: {}\n", app.get_name(), text); }
 
+SequenceReader openSequence(const CLI::App& app, const std::string& directory) {
+  SequenceReader sequence(directory);
+  for (const std::string& note : sequence.notes()) warn(app, note);
+  return sequence;
+}
+
+void requireTruth(const SequenceReader& sequence) {
+  if (sequence.hasLabels()) return;
+  throw DataError((sequence.directory() / "labels").string() + ": holds no labels to score by");
+}
+
+std::size_t scansOf(const SequenceReader& sequence, std::size_t frames) {
+  return frames == 0 ? sequence.size() : std::min(frames, sequence.size());
+}
+
 ConfigOptions::ConfigOptions(CLI::App& app) {
   app.add_option("--config", file_, "a file of parameters, as the node reads it");
   app.add_option("--method", method_, "the classifier, over --config");
@@ -93,13 +108,6 @@ void ProgressBar::advance() {
   fmt::print(stderr, "\r[{}{}] {:3d} %  {} of {}", std::string(filled, '='), std::string(kWidth - filled, ' '), percent,
              shown, total_);
   std::fflush(stderr);
-}
-
-double quantile(std::vector<double> values, double fraction) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  const double rank = std::ceil(fraction * static_cast<double>(values.size()));
-  return values[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
 }
 
 std::size_t peakMemory() {

@@ -11,6 +11,7 @@
 #include "donex/core/config.h"
 #include "donex/io/drive_run.h"
 #include "donex/io/evaluation.h"
+#include "donex/io/sequence.h"
 
 namespace donex {
 
@@ -26,6 +27,15 @@ int runProgram(CLI::App& app, int argc, char** argv, const std::function<void()>
 
 /// A line on stderr after the program's name, for what a user should know and need not stop for.
 void warn(const CLI::App& app, const std::string& text);
+
+/// Opens a sequence and warns of what was assumed. Throws DataError.
+SequenceReader openSequence(const CLI::App& app, const std::string& directory);
+
+/// Throws DataError where the sequence has no labels at all.
+void requireTruth(const SequenceReader& sequence);
+
+/// How many scans --frames asks for; `frames` 0 is all.
+std::size_t scansOf(const SequenceReader& sequence, std::size_t frames);
 
 /// The options --config, --method, --voxel-size and --set; the later of these wins over the earlier.
 class ConfigOptions {
@@ -58,9 +68,6 @@ class ProgressBar {
   int drawn_percent_ = -1;
   bool on_terminal_;
 };
-
-/// The value below which `fraction` of the values lie (nearest rank); 0 without values.
-double quantile(std::vector<double> values, double fraction);
 
 /// The most memory the process ever had resident [bytes].
 std::size_t peakMemory();

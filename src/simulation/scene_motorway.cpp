@@ -55,14 +55,16 @@ void addBorders(SceneBuilder& builder, const Path& path) {
   for (const double lateral : {-0.55, 0.55}) builder.guardRail(path, 0.0, length, lateral);
   for (const double side : {-1.0, 1.0}) {
     builder.guardRail(path, 0.0, length, side * (kHalfWidth + 0.6));
-    for (double s = 0.0; s < length; s += 50.0)
+    for (double s = 0.0; s < length; s += 50.0) {
       builder.pole(path.at(s, side * (kHalfWidth + 1.4)).position, 1.05, 0.06);
+    }
     for (double s = 0.0; s < length; s += random.uniform(4.0, 16.0)) {
       const Eigen::Vector2d place = path.at(s, side * (kHalfWidth + random.uniform(4.0, 14.0))).position;
-      if (random.chance(0.35))
+      if (random.chance(0.35)) {
         builder.tree(place);
-      else
+      } else {
         builder.bush(place, random.uniform(1.5, 3.0), random.uniform(1.0, 2.4));
+      }
     }
     for (double s = random.uniform(0.0, 300.0); s < length; s += random.uniform(300.0, 700.0)) {
       for (double x = 0.0; x < 120.0; x += 6.0) {

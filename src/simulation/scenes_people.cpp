@@ -45,10 +45,11 @@ Scene makeCrowd(std::uint64_t seed) {
     PathPoint place = path->at(s, side * random.uniform(5.5, 7.5));
     place.yaw = random.uniform(-3.1, 3.1);
     const bool somebody_waits = random.chance(0.7);
-    if (somebody_waits)
+    if (somebody_waits) {
       builder.parked(place, makePerson(random));
-    else
+    } else {
       builder.block(place, {2.0, 1.2, 1.0}, 99, 0.3f);
+    }
   }
   Course course;
   course.path = path;

@@ -90,12 +90,4 @@ inline LabelBagSummary label(const std::filesystem::path& in, const std::filesys
   return labelBag({in}, {out}, options, [](std::size_t, std::size_t) {});
 }
 
-/// The names of the files of a directory.
-inline std::vector<std::string> filesIn(const std::filesystem::path& directory) {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(directory)) names.push_back(entry.path().filename());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 }  // namespace donex::test

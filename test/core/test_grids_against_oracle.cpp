@@ -38,23 +38,37 @@ std::vector<Case> cases() {
   return all;
 }
 
-class AgainstOracle : public ::testing::TestWithParam<Case> {};
-
-oracle::Voxels memoryOf(const Grid3d& grid) {
-  oracle::Voxels voxels;
-  for (const Index3& v : grid.remembered()) voxels.insert(oracle::absolute(v, grid.window()));
-  return voxels;
-}
-
 constexpr int kScans = 25;
 constexpr int kEchoes = 600;  // three blocks: one a thread at most
 
-TEST_P(AgainstOracle, Grid3d) {
-  const Case& c = GetParam();
-  const Config config = smallGrid(Method::kDonex3d, c);
-  testing::RandomScans scans(c.seed, c.voxel_size, 12.0F);
-  oracle::Donex3d oracle(config);
-  Grid3d grid(config);
+void expectSameMemory(const Grid3d& grid, const oracle::Donex3d& oracle) {
+  oracle::Voxels voxels;
+  for (const Index3& v : grid.remembered()) voxels.insert(oracle::absolute(v, grid.window()));
+  ASSERT_EQ(voxels, oracle.memory());
+}
+
+void expectSameMemory(const Grid2d& grid, const oracle::Donex2d& oracle) {
+  std::map<oracle::Donex2d::Cell, HeightRange> ranges;
+  for (int x = 0; x < grid.window().extent().x(); ++x) {
+    for (int y = 0; y < grid.window().extent().y(); ++y) {
+      const HeightRange range = grid.rangeAt(x, y);
+      const oracle::Voxel v = oracle::absolute({x, y, 0}, grid.window());
+      if (!range.empty()) ranges[{v[0], v[1]}] = range;
+    }
+  }
+  ASSERT_EQ(ranges.size(), oracle.memory().size());
+  for (const auto& [cell, range] : oracle.memory()) {
+    ASSERT_EQ(ranges.count(cell), 1U);
+    ASSERT_EQ(ranges.at(cell).lo, range.lo);
+    ASSERT_EQ(ranges.at(cell).hi, range.hi);
+  }
+}
+
+template <class Grid, class Oracle>
+void compareGrid(const Config& config, unsigned seed) {
+  testing::RandomScans scans(seed, config.voxel_size, 12.0F);
+  Oracle oracle(config);
+  Grid grid(config);
   EchoLabels labels;
   std::size_t new_echoes = 0;
   for (int k = 0; k < kScans; ++k) {
@@ -66,16 +80,15 @@ TEST_P(AgainstOracle, Grid3d) {
       ASSERT_EQ(labels.dynamic[i], expected[i]) << "scan " << k << " echo " << i;
       new_echoes += labels.dynamic[i];
     }
-    ASSERT_EQ(memoryOf(grid), oracle.memory()) << "scan " << k;
+    ASSERT_NO_FATAL_FAILURE(expectSameMemory(grid, oracle)) << "scan " << k;
   }
   EXPECT_GT(new_echoes, 100U);
 }
 
-TEST_P(AgainstOracle, Detector3d) {
-  const Case& c = GetParam();
-  const Config config = smallGrid(Method::kDonex3d, c);
-  testing::RandomScans scans(c.seed + 1000, c.voxel_size, 12.0F);
-  oracle::Donex3d oracle(config);
+template <class Oracle>
+void compareDetector(const Config& config, unsigned seed) {
+  testing::RandomScans scans(seed, config.voxel_size, 12.0F);
+  Oracle oracle(config);
   const auto detector = makeDetector(config);
   EchoLabels labels;
   for (int k = 0; k < kScans; ++k) {
@@ -85,56 +98,19 @@ TEST_P(AgainstOracle, Detector3d) {
   }
 }
 
-std::map<oracle::Donex2d::Cell, HeightRange> memoryOf(const Grid2d& grid) {
-  std::map<oracle::Donex2d::Cell, HeightRange> ranges;
-  for (int x = 0; x < grid.window().extent().x(); ++x) {
-    for (int y = 0; y < grid.window().extent().y(); ++y) {
-      const HeightRange range = grid.rangeAt(x, y);
-      const oracle::Voxel v = oracle::absolute({x, y, 0}, grid.window());
-      if (!range.empty()) ranges[{v[0], v[1]}] = range;
-    }
-  }
-  return ranges;
-}
+class AgainstOracle : public ::testing::TestWithParam<Case> {
+ protected:
+  static Config config(Method method) { return smallGrid(method, GetParam()); }
+  static unsigned seed() { return GetParam().seed; }
+};
 
-TEST_P(AgainstOracle, Grid2d) {
-  const Case& c = GetParam();
-  const Config config = smallGrid(Method::kDonex2d, c);
-  testing::RandomScans scans(c.seed + 2000, c.voxel_size, 12.0F);
-  oracle::Donex2d oracle(config);
-  Grid2d grid(config);
-  EchoLabels labels;
-  for (int k = 0; k < kScans; ++k) {
-    const Scan scan = scans.next(kEchoes);
-    const oracle::Labels expected = oracle.process(scan);
-    grid.shift(scan.odom_from_base);
-    grid.take(scan, labels);
-    for (std::size_t i = 0; k > 0 && i < expected.size(); ++i) {
-      ASSERT_EQ(labels.dynamic[i], expected[i]) << "scan " << k << " echo " << i;
-    }
-    const auto ranges = memoryOf(grid);
-    ASSERT_EQ(ranges.size(), oracle.memory().size()) << "scan " << k;
-    for (const auto& [cell, range] : oracle.memory()) {
-      ASSERT_EQ(ranges.count(cell), 1U);
-      ASSERT_EQ(ranges.at(cell).lo, range.lo);
-      ASSERT_EQ(ranges.at(cell).hi, range.hi);
-    }
-  }
-}
+TEST_P(AgainstOracle, Grid3d) { compareGrid<Grid3d, oracle::Donex3d>(config(Method::kDonex3d), seed()); }
 
-TEST_P(AgainstOracle, Detector2d) {
-  const Case& c = GetParam();
-  const Config config = smallGrid(Method::kDonex2d, c);
-  testing::RandomScans scans(c.seed + 3000, c.voxel_size, 12.0F);
-  oracle::Donex2d oracle(config);
-  const auto detector = makeDetector(config);
-  EchoLabels labels;
-  for (int k = 0; k < kScans; ++k) {
-    const Scan scan = scans.next(kEchoes);
-    detector->process(scan, labels);
-    ASSERT_EQ(labels.dynamic, oracle.process(scan)) << "scan " << k;
-  }
-}
+TEST_P(AgainstOracle, Detector3d) { compareDetector<oracle::Donex3d>(config(Method::kDonex3d), seed() + 1000); }
+
+TEST_P(AgainstOracle, Grid2d) { compareGrid<Grid2d, oracle::Donex2d>(config(Method::kDonex2d), seed() + 2000); }
+
+TEST_P(AgainstOracle, Detector2d) { compareDetector<oracle::Donex2d>(config(Method::kDonex2d), seed() + 3000); }
 
 class Threads : public ::testing::TestWithParam<std::tuple<Method, Compensation, int>> {};
 

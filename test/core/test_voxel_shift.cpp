@@ -38,11 +38,9 @@ Scan landmarks() {
   return scan;
 }
 
-class VoxelShift : public ::testing::TestWithParam<Compensation> {};
-
-TEST_P(VoxelShift, KeepsContentsWithinOneVoxelIn3d) {
-  Grid3d memory(grid(Method::kDonex3d, GetParam()));
-  const Scan scan = landmarks();
+/// Shows the memory a scan, and then nothing while it moves on.
+template <class Memory>
+void takeAndMoveOn(Memory& memory, const Scan& scan) {
   EchoLabels labels;
   memory.shift(Eigen::Isometry3d::Identity());
   memory.take(scan, labels);
@@ -50,6 +48,14 @@ TEST_P(VoxelShift, KeepsContentsWithinOneVoxelIn3d) {
     memory.shift(poseAfter(k));
     memory.take(Scan(), labels);
   }
+}
+
+class VoxelShift : public ::testing::TestWithParam<Compensation> {};
+
+TEST_P(VoxelShift, KeepsContentsWithinOneVoxelIn3d) {
+  Grid3d memory(grid(Method::kDonex3d, GetParam()));
+  const Scan scan = landmarks();
+  takeAndMoveOn(memory, scan);
   const auto voxels = memory.remembered();
   ASSERT_EQ(voxels.size(), scan.echoes.size());
   const double voxel = memory.window().voxelSize();
@@ -67,13 +73,7 @@ TEST_P(VoxelShift, KeepsContentsWithinOneVoxelIn3d) {
 TEST_P(VoxelShift, KeepsRangesWithinOneVoxelIn2d) {
   Grid2d memory(grid(Method::kDonex2d, GetParam()));
   const Scan scan = landmarks();
-  EchoLabels labels;
-  memory.shift(Eigen::Isometry3d::Identity());
-  memory.take(scan, labels);
-  for (int k = 1; k <= kShifts; ++k) {
-    memory.shift(poseAfter(k));
-    memory.take(Scan(), labels);
-  }
+  takeAndMoveOn(memory, scan);
   const GridWindow& window = memory.window();
   int ranges = 0;
   for (int x = 0; x < window.extent().x(); ++x) {

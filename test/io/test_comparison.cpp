@@ -81,17 +81,16 @@ TEST(Objects, AreFoundByHalfOfTheirEchoes) {
 
 TEST(BirdView, ShowsTheWorstVerdictOfACell) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  const std::vector<Eigen::Vector3f> echoes{{0.1F, 0.1F, 0}, {0.15F, 0.1F, 1}, {-0.1F, 0.1F, 0}, {10.1F, -5.1F, 0},
-                                            {49.9F, 49.9F, 0}, {80, 0, 0},     {nan, 0, 0}};
+  const std::vector<Eigen::Vector3f> echoes{{0.1F, 0.1F, 0},   {0.15F, 0.1F, 1}, {-0.1F, 0.1F, 0}, {10.1F, -5.1F, 0},
+                                            {49.9F, 49.9F, 0}, {80, 0, 0},       {nan, 0, 0}};
   const Labels truth{9, 251, 251, 9, 0, 251, 251}, prediction{9, 9, 251, 251, 251, 9, 9};
   const BirdView view = makeBirdView(7, echoes, truth, {prediction, {}});
   EXPECT_EQ(view.scan, 7U);
   EXPECT_EQ(view.cells, (std::vector<std::uint16_t>{300, 224, 249, 250, 250, 250, 499, 499}));
   ASSERT_EQ(view.verdicts.size(), 2U);
   const auto verdict = [](Verdict v) { return static_cast<std::uint8_t>(v); };
-  EXPECT_EQ(view.verdicts[0],
-            (std::vector<std::uint8_t>{verdict(Verdict::kFalseAlarm), verdict(Verdict::kFound),
-                                       verdict(Verdict::kMissed), verdict(Verdict::kUnjudged)}));
+  EXPECT_EQ(view.verdicts[0], (std::vector<std::uint8_t>{verdict(Verdict::kFalseAlarm), verdict(Verdict::kFound),
+                                                         verdict(Verdict::kMissed), verdict(Verdict::kUnjudged)}));
   EXPECT_EQ(view.verdicts[1], std::vector<std::uint8_t>(4, 0));
 }
 
@@ -148,6 +147,18 @@ TEST_F(Reports, LeaveOutWhatDoesNotFitAndSaySo) {
   EXPECT_FALSE(predictions[2].figures);
 }
 
+TEST(SequenceComparison, ShowsAScanInWhichSomethingMoves) {
+  for (const std::size_t moving : {6U, 12U}) {  // in the first half, in the second
+    const test::TemporaryDirectory directory;
+    std::mt19937 random(5);
+    SequenceWriter writer(directory.path());
+    for (std::size_t i = 0; i < 16; ++i) writer.add(test::randomScan(random, i, 20), Labels(20, i == moving ? 252 : 9));
+    const auto comparison = compareOnSequence(SequenceReader(directory.path()), 16, {}, [] {});
+    ASSERT_TRUE(comparison.view);
+    EXPECT_EQ(comparison.view->scan, moving);
+  }
+}
+
 TEST_F(Reports, JsonHoldsEveryCount) {
   const json document = json::parse(toJson(compare()));
   const json& perfect = document["sequences"][0]["predictions"][0];
@@ -185,17 +196,6 @@ TEST_F(Reports, ThePageHoldsAllItShows) {
   for (const char* foreign : {"https://", "src=\"", "<link rel=\"stylesheet\"", "@import", "fetch("}) {
     EXPECT_EQ(page.find(foreign), std::string::npos) << foreign;
   }
-}
-
-TEST_F(Reports, AreWrittenWholeOrNotAtAll) {
-  const fs::path file = directory_.path() / "report.html";
-  writeReport(file, "text");
-  std::ifstream stream(file);
-  std::string text;
-  std::getline(stream, text);
-  EXPECT_EQ(text, "text");
-  EXPECT_THROW(writeReport(directory_.path() / "none" / "report.html", "text"), DataError);
-  EXPECT_FALSE(fs::exists(directory_.path() / "none"));
 }
 
 TEST_F(Reports, FiguresThatCannotBeUnderstoodAreNamed) {

@@ -147,10 +147,16 @@ TEST(ConfigFile, NamesAllFaultsAtOnce) {
   }
 }
 
-TEST(ConfigFile, MissingFileIsNamed) {
-  EXPECT_THROW(readConfigFile("/nowhere/config.yaml"), DataError);
+TEST(ConfigFile, WhatIsNoFileIsNamed) {
   const test::TemporaryDirectory directory;
-  EXPECT_THROW(readConfigFile(directory.path()), DataError);
+  for (const auto& file : {directory.path() / "config.yaml", directory.path()}) {
+    try {
+      readConfigFile(file);
+      FAIL() << file << " was read";
+    } catch (const DataError& error) {
+      EXPECT_EQ(error.what(), file.string() + ": cannot be read");
+    }
+  }
 }
 
 TEST(Settings, OverrideTheLaterTheStronger) {

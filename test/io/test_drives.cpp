@@ -94,9 +94,7 @@ TEST_P(Drives, TheDefaultConfigurationFindsWhatMoves) {
       EchoLabels labels;
       detector->process(scans[k].scan, labels);
       if (scans[k].labels.empty() || !evaluation.scores(k)) continue;
-      std::vector<std::uint32_t> said(labels.dynamic.size());
-      for (std::size_t i = 0; i < said.size(); ++i) said[i] = labels.dynamic[i] != 0 ? kLabelMoving : kLabelStatic;
-      evaluation.add(k, scans[k].scan.echoes, scans[k].labels, said);
+      evaluation.add(k, scans[k].scan.echoes, scans[k].labels, asSemanticKitti(labels));
     }
     ASSERT_GT(evaluation.total().moving(), 1000U);
     EXPECT_GT(evaluation.total().iou(), 0.93);
@@ -104,9 +102,8 @@ TEST_P(Drives, TheDefaultConfigurationFindsWhatMoves) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Drives, ::testing::ValuesIn(drives()), [](const auto& tested) {
-  return std::filesystem::path(tested.param).filename().string();
-});
+INSTANTIATE_TEST_SUITE_P(All, Drives, ::testing::ValuesIn(drives()),
+                         [](const auto& tested) { return std::filesystem::path(tested.param).filename().string(); });
 
 }  // namespace
 }  // namespace donex

@@ -83,7 +83,8 @@ TEST(StaticMap, KeepsToItsMemoryAndLosesNothing) {
 }
 
 TEST(StaticMap, SaysWhatItCannotWrite) {
-  StaticMap map("/nowhere/map.pcd", 0.5, 1000000);
+  const test::TemporaryDirectory directory;
+  StaticMap map(directory.path() / "none" / "map.pcd", 0.5, 1000000);
   map.add({1.0, 1.0, 1.0});
   EXPECT_THROW(map.write(), DataError);
 }
@@ -98,7 +99,7 @@ TEST(MapScore, ByHand) {
   add(2.5, 4, true, false);   // a dynamic voxel, rejected
   add(3.5, 1, true, true);    // a dynamic voxel, one moving echo stays
   add(3.5, 3, true, false);
-  add(4.5, 3, false, true);   // mostly static: preserved
+  add(4.5, 3, false, true);  // mostly static: preserved
   add(4.5, 1, true, true);
   const MapScore::Rates rates = score.rates();
   EXPECT_EQ(rates.static_voxels, 3U);

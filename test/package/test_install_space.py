@@ -15,7 +15,8 @@ import rospy
 from sensor_msgs.msg import PointCloud2
 
 INSTALL_SPACE = pathlib.Path(sys.argv.pop()).resolve()
-PROGRAMS = ["donex_sequence", "donex_evaluate", "donex_simulate", "donex_bag", "donex_sequence_to_bag"]
+PROGRAMS = ["donex_sequence", "donex_evaluate", "donex_compare", "donex_map", "donex_bag", "donex_archive",
+            "donex_sequence_to_bag", "donex_simulate"]
 CLOUDS = 20
 DEADLINE = 120.0  # for the first clouds on a slow machine [s]
 
@@ -53,8 +54,8 @@ class Demo(unittest.TestCase):
         rospy.init_node("test_install_space", disable_signals=True)
         rospy.Subscriber("/donex/labeled_points", PointCloud2, cls.on_cloud, buff_size=1 << 26)
         end = time.monotonic() + DEADLINE
-        while len(cls.clouds) < CLOUDS and time.monotonic() < end:
-            time.sleep(0.1)
+        while len(cls.clouds) < CLOUDS and time.monotonic() < end and cls.launch.poll() is None:
+            time.sleep(0.1)  # until what the tests ask for is there; they say what is missing
 
     @classmethod
     def tearDownClass(cls):

@@ -92,9 +92,9 @@ TEST_F(Programs, HelpIsNoError) {
 TEST_F(Programs, EvaluateScoresSideBySide) {
   fs::copy(path("seq/labels"), path("truth"));
   run(DONEX_SEQUENCE, "seq --out pred");
-  const Outcome outcome = expect(0, "truth", DONEX_EVALUATE, "seq truth pred");
-  EXPECT_NE(outcome.text.find("pred"), std::string::npos);
-  EXPECT_NE(outcome.text.find("static"), std::string::npos);
+  const Outcome outcome = expect(0, "\ntruth  ", DONEX_EVALUATE, "seq truth pred");
+  EXPECT_NE(outcome.text.find("\npred  "), std::string::npos) << outcome.text;
+  EXPECT_NE(outcome.text.find("\nstatic  "), std::string::npos) << outcome.text;
 }
 
 TEST_F(Programs, EvaluateNeverGuesses) {
@@ -155,7 +155,7 @@ TEST_F(Programs, MapIsBuiltAndScored) {
   expect(1, "none: is not a directory", DONEX_MAP, "none map.pcd");
   expect(1, "/none: is not a directory", DONEX_MAP, "seq none/map.pcd");
   fs::remove_all(path("seq/labels"));
-  expect(1, "seq/labels: holds no labels to compare with", DONEX_MAP, "seq map.pcd --compare");
+  expect(1, "seq/labels: holds no labels to score by", DONEX_MAP, "seq map.pcd --compare");
 }
 
 #ifdef DONEX_BAG
@@ -163,7 +163,26 @@ TEST_F(Programs, MapIsBuiltAndScored) {
 TEST_F(Programs, MapIsBuiltFromABag) {
   run(DONEX_SEQUENCE_TO_BAG, "seq in.bag");
   expect(0, "8 scans, ", DONEX_MAP, "in.bag map.pcd --method peopleremover");
-  expect(2, "--compare and --frames are for sequences", DONEX_MAP, "in.bag map.pcd --compare");
+  expect(1, "in.bag: no cloud on /points has a field label", DONEX_MAP, "in.bag other.pcd --compare");
+  EXPECT_FALSE(fs::exists(path("other.pcd")));
+  expect(2, "--frames is for sequences", DONEX_MAP, "in.bag map.pcd --frames 3");
+}
+
+/// "(N static, M moving)" of a map's score.
+std::string scoredEchoes(const Outcome& outcome) {
+  const std::size_t line = outcome.text.find("by echo (DynamicMap_Benchmark)");
+  const std::size_t begin = outcome.text.find("   (", line);
+  return begin == std::string::npos ? "" : outcome.text.substr(begin, outcome.text.find(')', begin) - begin);
+}
+
+TEST_F(Programs, MapOfABagIsScoredByTheTruthOfItsClouds) {
+  const std::string scene = " --duration 1 --beams 16 --odometry-drift 0";
+  run(DONEX_SIMULATE, "intersection drive" + scene);
+  run(DONEX_SIMULATE, "intersection drive.bag" + scene);
+  const Outcome sequence = expect(0, "AA ", DONEX_MAP, "drive a.pcd --compare");
+  const Outcome bag = expect(0, "AA ", DONEX_MAP, "drive.bag b.pcd --compare");
+  EXPECT_NE(scoredEchoes(sequence), "") << sequence.text;
+  EXPECT_EQ(scoredEchoes(bag), scoredEchoes(sequence)) << bag.text;
 }
 
 TEST_F(Programs, BagWritesASummary) {
@@ -173,6 +192,7 @@ TEST_F(Programs, BagWritesASummary) {
   std::string text;
   std::getline(stream, text);
   EXPECT_NE(text.find("\"labeled\": 8, \"dropped\": 0"), std::string::npos) << text;
+  EXPECT_NE(text.find("\"prediction\": {"), std::string::npos) << text;
 }
 
 TEST_F(Programs, BagIsLabelled) {

@@ -60,7 +60,7 @@ TEST_F(Simulate, WritesABag) {
 }
 
 TEST_F(Simulate, WarnsThatASequenceCannotHoldTheTimes) {
-  expect(0, {"distortion"}, "street out --duration 0.2 --beams 16 --distortion");
+  expect(0, {"has no time for each echo"}, "street out --duration 0.2 --beams 16 --distortion");
 }
 
 TEST_F(Simulate, NamesEveryWrongArgumentAndWritesNothing) {
@@ -73,8 +73,8 @@ TEST_F(Simulate, NamesEveryWrongArgumentAndWritesNothing) {
 
 TEST_F(Simulate, FailsWhereItCannotWrite) {
   expect(0, {}, "empty_room out --duration 0.2");
-  expect(1, {"out"}, "empty_room out --duration 0.2");
-  expect(1, {"nowhere"}, "empty_room nowhere/out.bag --duration 0.2");
+  expect(1, {"out/velodyne: is not empty"}, "empty_room out --duration 0.2");
+  expect(1, {"nowhere/out.bag: cannot be written"}, "empty_room nowhere/out.bag --duration 0.2");
 }
 
 TEST_F(Simulate, HelpNamesTheScenes) {

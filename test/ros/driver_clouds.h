@@ -32,134 +32,64 @@ struct DriverCloud {
 
 inline const double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
-inline const std::vector<DriverCloud>& driverClouds() {
+/// All drivers begin with x, y, z as FLOAT32.
+inline std::vector<DriverField> positionAnd(const std::vector<DriverField>& others) {
+  std::vector<DriverField> fields{
+      {"x", PointField::FLOAT32, 0}, {"y", PointField::FLOAT32, 4}, {"z", PointField::FLOAT32, 8}};
+  fields.insert(fields.end(), others.begin(), others.end());
+  return fields;
+}
+
+inline std::vector<DriverField> velodyneFields() {
   using P = PointField;
+  return positionAnd({{"intensity", P::FLOAT32, 12}, {"ring", P::UINT16, 16}, {"time", P::FLOAT32, 18}});
+}
+
+/// PCL's alignment.
+inline std::vector<DriverField> ousterFields(std::uint8_t ring) {
+  using P = PointField;
+  return positionAnd({{"intensity", P::FLOAT32, 16},
+                      {"t", P::UINT32, 20},
+                      {"reflectivity", P::UINT16, 24},
+                      {"ring", ring, 26},
+                      {"ambient", P::UINT16, 28},
+                      {"range", P::UINT32, 32}});
+}
+
+/// PCL's alignment.
+inline std::vector<DriverField> hesaiGeneralFields() {
+  using P = PointField;
+  return positionAnd({{"intensity", P::FLOAT32, 16}, {"timestamp", P::FLOAT64, 24}, {"ring", P::UINT16, 32}});
+}
+
+/// XYZIRT without a gap, as Hesai's newer driver and RoboSense's have it.
+inline std::vector<DriverField> packedFields() {
+  using P = PointField;
+  return positionAnd({{"intensity", P::FLOAT32, 12}, {"ring", P::UINT16, 16}, {"timestamp", P::FLOAT64, 18}});
+}
+
+inline std::vector<DriverField> livoxFields() {
+  using P = PointField;
+  return positionAnd(
+      {{"intensity", P::FLOAT32, 12}, {"tag", P::UINT8, 16}, {"line", P::UINT8, 17}, {"timestamp", P::FLOAT64, 18}});
+}
+
+inline const std::vector<DriverCloud>& driverClouds() {
+  constexpr StampedAt kFirst = StampedAt::kFirstEcho, kLast = StampedAt::kLastEcho;
   static const std::vector<DriverCloud> clouds{
       // velodyne_pointcloud 1.6 and later, organize_cloud false and true; stamped with the last packet.
-      {"velodyne",
-       {{"x", P::FLOAT32, 0},
-        {"y", P::FLOAT32, 4},
-        {"z", P::FLOAT32, 8},
-        {"intensity", P::FLOAT32, 12},
-        {"ring", P::UINT16, 16},
-        {"time", P::FLOAT32, 18}},
-       22,
-       1,
-       StampedAt::kLastEcho,
-       "time",
-       1.0,
-       false,
-       kNotANumber},
-      {"velodyne organised",
-       {{"x", P::FLOAT32, 0},
-        {"y", P::FLOAT32, 4},
-        {"z", P::FLOAT32, 8},
-        {"intensity", P::FLOAT32, 12},
-        {"ring", P::UINT16, 16},
-        {"time", P::FLOAT32, 18}},
-       22,
-       16,
-       StampedAt::kLastEcho,
-       "time",
-       1.0,
-       false,
-       kNotANumber},
-      // ouster_ros: PCL's alignment, ring as UINT8 (until 2022) and as UINT16.
-      {"ouster ring 8",
-       {{"x", P::FLOAT32, 0},
-        {"y", P::FLOAT32, 4},
-        {"z", P::FLOAT32, 8},
-        {"intensity", P::FLOAT32, 16},
-        {"t", P::UINT32, 20},
-        {"reflectivity", P::UINT16, 24},
-        {"ring", P::UINT8, 26},
-        {"ambient", P::UINT16, 28},
-        {"range", P::UINT32, 32}},
-       48,
-       16,
-       StampedAt::kFirstEcho,
-       "t",
-       1e9,
-       false,
-       0.0},
-      {"ouster",
-       {{"x", P::FLOAT32, 0},
-        {"y", P::FLOAT32, 4},
-        {"z", P::FLOAT32, 8},
-        {"intensity", P::FLOAT32, 16},
-        {"t", P::UINT32, 20},
-        {"reflectivity", P::UINT16, 24},
-        {"ring", P::UINT16, 26},
-        {"ambient", P::UINT16, 28},
-        {"range", P::UINT32, 32}},
-       48,
-       16,
-       StampedAt::kFirstEcho,
-       "t",
-       1e9,
-       false,
-       0.0},
-      // HesaiLidar_General_ROS: PCL's alignment; HesaiLidar_ROS_2.0: packed.
-      {"hesai general",
-       {{"x", P::FLOAT32, 0},
-        {"y", P::FLOAT32, 4},
-        {"z", P::FLOAT32, 8},
-        {"intensity", P::FLOAT32, 16},
-        {"timestamp", P::FLOAT64, 24},
-        {"ring", P::UINT16, 32}},
-       48,
-       1,
-       StampedAt::kFirstEcho,
-       "timestamp",
-       1.0,
-       true,
-       kNotANumber},
-      {"hesai 2.0",
-       {{"x", P::FLOAT32, 0},
-        {"y", P::FLOAT32, 4},
-        {"z", P::FLOAT32, 8},
-        {"intensity", P::FLOAT32, 12},
-        {"ring", P::UINT16, 16},
-        {"timestamp", P::FLOAT64, 18}},
-       26,
-       1,
-       StampedAt::kFirstEcho,
-       "timestamp",
-       1.0,
-       true,
-       kNotANumber},
+      {"velodyne", velodyneFields(), 22, 1, kLast, "time", 1.0, false, kNotANumber},
+      {"velodyne organised", velodyneFields(), 22, 16, kLast, "time", 1.0, false, kNotANumber},
+      // ouster_ros: ring as UINT8 (until 2022) and as UINT16.
+      {"ouster ring 8", ousterFields(PointField::UINT8), 48, 16, kFirst, "t", 1e9, false, 0.0},
+      {"ouster", ousterFields(PointField::UINT16), 48, 16, kFirst, "t", 1e9, false, 0.0},
+      // HesaiLidar_General_ROS and HesaiLidar_ROS_2.0.
+      {"hesai general", hesaiGeneralFields(), 48, 1, kFirst, "timestamp", 1.0, true, kNotANumber},
+      {"hesai 2.0", packedFields(), 26, 1, kFirst, "timestamp", 1.0, true, kNotANumber},
       // rslidar_sdk, POINT_TYPE XYZIRT: columns and rows exchanged, NaN kept unless dense_points.
-      {"robosense",
-       {{"x", P::FLOAT32, 0},
-        {"y", P::FLOAT32, 4},
-        {"z", P::FLOAT32, 8},
-        {"intensity", P::FLOAT32, 12},
-        {"ring", P::UINT16, 16},
-        {"timestamp", P::FLOAT64, 18}},
-       26,
-       40,
-       StampedAt::kLastEcho,
-       "timestamp",
-       1.0,
-       true,
-       kNotANumber},
+      {"robosense", packedFields(), 26, 40, kLast, "timestamp", 1.0, true, kNotANumber},
       // livox_ros_driver2, xfer_format 0: times in nanoseconds as a double.
-      {"livox",
-       {{"x", P::FLOAT32, 0},
-        {"y", P::FLOAT32, 4},
-        {"z", P::FLOAT32, 8},
-        {"intensity", P::FLOAT32, 12},
-        {"tag", P::UINT8, 16},
-        {"line", P::UINT8, 17},
-        {"timestamp", P::FLOAT64, 18}},
-       26,
-       1,
-       StampedAt::kFirstEcho,
-       "timestamp",
-       1e9,
-       true,
-       0.0},
-  };
+      {"livox", livoxFields(), 26, 1, kFirst, "timestamp", 1e9, true, 0.0}};
   return clouds;
 }
 

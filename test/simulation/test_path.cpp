@@ -58,8 +58,9 @@ TEST(Path, ProjectionIsTheNearestOfManySamples) {
     for (int i = 0; i < 20; ++i) {
       const Eigen::Vector2d point(random.uniform(-100.0, 100.0), random.uniform(-100.0, 100.0));
       double nearest = 1e9;
-      for (double s = 0.0; s <= path.length(); s += 0.05)
+      for (double s = 0.0; s <= path.length(); s += 0.05) {
         nearest = std::min(nearest, (path.at(s).position - point).norm());
+      }
       EXPECT_NEAR(path.project(point).distance, nearest, 0.03);
     }
   }

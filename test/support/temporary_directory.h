@@ -1,12 +1,14 @@
 // Files that are gone after the test.
 #pragma once
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace donex::test {
 
@@ -27,6 +29,14 @@ class TemporaryDirectory {
  private:
   std::filesystem::path path_;
 };
+
+/// The sorted names of what is in a directory.
+inline std::vector<std::string> filesIn(const std::filesystem::path& directory) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(directory)) names.push_back(entry.path().filename());
+  std::sort(names.begin(), names.end());
+  return names;
+}
 
 inline void writeText(const std::filesystem::path& file, const std::string& text) {
   std::ofstream stream(file, std::ios::binary);

@@ -26,7 +26,7 @@ struct LabelBagSummary {
   std::size_t messages = 0;  ///< of the input
   std::size_t echoes = 0;
   PipelineCounts counts;
-  double duration = 0.0;     ///< from the first to the last message of the input [s]
+  double duration = 0.0;             ///< from the first to the last message of the input [s]
   std::vector<double> times;         ///< parsing and judging, a labelled cloud [s]
   Evaluation evaluation;             ///< where the clouds carry their truth, as simulated ones do
   std::vector<std::string> remarks;  ///< why something was dropped, refused or forgotten: each kind's first

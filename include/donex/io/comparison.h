@@ -24,11 +24,11 @@ enum class Verdict : std::uint8_t {
 /// A scan from above: the occupied cells of a square around the sensor, and the verdict of each prediction there.
 struct BirdView {
   std::size_t scan = 0;
-  std::vector<std::uint16_t> cells;                ///< column (along x), row (along y), ...
+  std::vector<std::uint16_t> cells;                 ///< column (along x), row (along y), ...
   std::vector<std::vector<std::uint8_t>> verdicts;  ///< by prediction: a Verdict a cell
 
-  static constexpr double kCell = 0.2;   ///< [m]
-  static constexpr int kWidth = 500;     ///< cells along an edge: 50 m to each side
+  static constexpr double kCell = 0.2;  ///< [m]
+  static constexpr int kWidth = 500;    ///< cells along an edge: 50 m to each side
 };
 
 /// `predictions` may hold empty ones (nothing was predicted there); others have a label an echo.
@@ -49,7 +49,7 @@ struct SequenceComparison {
   std::string name;
   std::size_t scans = 0;
   std::vector<ScoredPrediction> predictions;
-  std::optional<BirdView> view;  ///< of the scored scan with most moving echoes in the second half
+  std::optional<BirdView> view;  ///< of the scored scan with most moving echoes, in the second half if any
 
   std::vector<NamedEvaluation> columns() const;
 };
@@ -82,13 +82,12 @@ struct Comparison {
 };
 
 std::string toJson(const Comparison& comparison);
+/// One entry of that document's "predictions".
+std::string toJson(const ScoredPrediction& prediction);
 /// A line a sequence, prediction, group (total, class, range, speed) and member.
 std::string toCsv(const Comparison& comparison);
 /// One page that holds all it shows: no other file, no network.
 std::string toHtml(const Comparison& comparison);
-
-/// Writes a text file, whole or not at all. Throws DataError.
-void writeReport(const std::filesystem::path& file, const std::string& text);
 
 /// The figures of a run beside its label files, run.json. Nothing where there is none; throws DataError where it cannot
 /// be understood.

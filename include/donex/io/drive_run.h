@@ -41,7 +41,4 @@ class DriveRun {
   std::vector<double> times_, cpu_times_;
 };
 
-/// kLabelMoving where dynamic, kLabelStatic elsewhere.
-std::vector<std::uint32_t> asSemanticKitti(const EchoLabels& labels);
-
 }  // namespace donex

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "donex/core/detector.h"
 #include "donex/core/scan.h"
 #include "donex/io/data_error.h"
 #include "donex/io/pose.h"
@@ -94,7 +95,10 @@ class SequenceWriter {
   double last_stamp_ = 0.0;
 };
 
-/// A label file by itself; throw DataError. Writing goes to a temporary name first: never half a file.
+/// kLabelMoving where dynamic, kLabelStatic elsewhere.
+std::vector<std::uint32_t> asSemanticKitti(const EchoLabels& labels);
+
+/// A label file by itself; throw DataError. Never half a file is written.
 std::vector<std::uint32_t> readLabels(const std::filesystem::path& file);
 void writeLabels(const std::filesystem::path& file, const std::vector<std::uint32_t>& labels);
 
