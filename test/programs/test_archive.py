@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """donex_archive on a small folder: corrupt bags, a split recording, a run that is killed; results as of single runs.
 
-Usage: test_archive.py DONEX_ARCHIVE DIRECTORY_OF_PROGRAMS
+Usage: test_archive.py DONEX_ARCHIVE DIRECTORY_OF_PROGRAMS [--page]
 """
 import csv
 import json
@@ -14,6 +14,8 @@ import tempfile
 import time
 
 import rosbag
+
+HERE = pathlib.Path(__file__).resolve().parent
 
 
 def run(*command, code=0):
@@ -54,10 +56,36 @@ def make_bags(programs, folder):
     bags = {"one.bag": ("street", 1), "two.bag": ("intersection", 2), "day/long.bag": ("bend", 3)}
     for name, (scene, seed) in bags.items():
         run(programs / "donex_simulate", scene, folder / name, "--beams", 16, "--seed", seed, "--duration",
-            4 if "long" in name else 1, "--compression", "lz4" if seed == 2 else "none")
+            8 if "long" in name else 1, "--compression", "lz4" if seed == 2 else "none")
     (folder / "bad.bag").write_bytes((folder / "one.bag").read_bytes()[:-3000])
     (folder / "broken.bag").write_text("no bag")
     return split(folder / "two.bag", folder)
+
+
+def check_page(page, rows):
+    """The page has every recording that was scored, the worst first, with the figures of summary.csv."""
+    text = page.read_text()
+    begin = text.index("const data = ") + len("const data = ")
+    data, _ = json.JSONDecoder().raw_decode(text[begin:])
+    done = {name: float(row["iou"]) for name, row in rows.items() if row["state"] == "done"}
+    names = [sequence["name"] for sequence in data["sequences"]]
+    expect(names == sorted(done, key=done.get) and len(names) > 1, "the worst recording comes first, none is missing")
+    for sequence in data["sequences"]:
+        total = sequence["predictions"][0]["total"]
+        found = total["tp"] / (total["tp"] + total["fp"] + total["fn"])
+        expect(abs(found - done[sequence["name"]]) < 1e-6, f"the page's score of {sequence['name']} is the summary's")
+    if "--page" in sys.argv:
+        print(run(sys.executable, HERE / "check_page.py", page), end="")
+
+
+def check_many_parts(archive, folder):
+    """Numbers are numbers: the eleventh part follows the tenth, and what has no first part stands alone."""
+    folder.mkdir()
+    for name in [f"drive_{part}" for part in range(12)] + ["alone_3"]:
+        (folder / f"{name}.bag").touch()
+    listed = json.loads(run(archive, folder, folder / "out", "--list", "--join"))
+    expect(listed == {"drive_0": [str(folder / f"drive_{part}.bag") for part in range(12)],
+                      "alone_3": [str(folder / "alone_3.bag")]}, "twelve parts are one recording, in their order")
 
 
 def kill_in_the_middle(archive, folder, out):
@@ -78,6 +106,7 @@ def main():
     os.environ["DONEX_BAG"] = str(programs / "donex_bag")
     with tempfile.TemporaryDirectory() as name:
         folder, out, single = (pathlib.Path(name) / part for part in ("in", "out", "single"))
+        check_many_parts(archive, pathlib.Path(name) / "many")
         parts = make_bags(programs, folder)
         kill_in_the_middle(archive, folder, out)
         text = run(archive, folder, out, code=1)
@@ -94,6 +123,7 @@ def main():
         expect(set(rows) == {"one", "two", "day/long", "bad", "broken", recording}, "the summary has all recordings")
         expect(rows["bad"]["state"] == "missing" and rows["one"]["labeled"] == "10", "the summary tells what was done")
         expect(0.0 < float(rows["day/long"]["recall"]) <= 1.0, "simulated bags are scored by their own truth")
+        check_page(out / "report.html", rows)
         before = (out / "one.bag").stat().st_mtime_ns
         (folder / "bad.bag").unlink()
         (folder / "broken.bag").unlink()
