@@ -54,33 +54,22 @@ void report(const LabelBagSummary& summary) {
 /// A ratio of nothing is null.
 std::string jsonNumber(double value) { return std::isfinite(value) ? fmt::format("{:.6f}", value) : "null"; }
 
-/// The score as the page of many runs shows it.
-ScoredPrediction predictionOf(const LabelBagSummary& summary, const Config& config) {
-  RunFigures figures;
-  figures.method = fmt::format("{}, {} m", nameOf(config.method), config.voxel_size);
-  figures.scans = summary.times.size();
-  figures.median_time = quantile(summary.times, 0.5);
-  figures.p99_time = quantile(summary.times, 0.99);
-  figures.peak_memory = peakMemory();
-  return {nameOf(config.method), {}, summary.evaluation, figures, {}};
-}
-
 /// What a workflow gathers from many runs.
 void keepSummary(const fs::path& file, const LabelBagSummary& summary, const Config& config) {
   double seconds = 0.0;
   for (const double time : summary.times) seconds += time;
   const PipelineCounts& counts = summary.counts;
   const Counts& score = summary.evaluation.total();
-  const ScoredPrediction prediction = predictionOf(summary, config);
+  const RunFigures figures = figuresOf(summary.times, config);
+  const ScoredPrediction prediction{nameOf(config.method), {}, summary.evaluation, figures, {}};
   writeWhole(file, fmt::format("{{\"method\": \"{}\", \"duration\": {:.3f}, \"messages\": {}, \"clouds\": {}, "
                                "\"labeled\": {}, \"dropped\": {}, \"echoes\": {}, \"labelling_time\": {:.3f}, "
                                "\"median_time\": {:.6f}, \"p99_time\": {:.6f}, \"peak_memory\": {}, "
                                "\"iou\": {}, \"precision\": {}, \"recall\": {}, \"prediction\": {}}}\n",
                                nameOf(config.method), summary.duration, summary.messages, counts.clouds_in,
                                counts.clouds_labeled, counts.dropped.total(), summary.echoes, seconds,
-                               prediction.figures->median_time, prediction.figures->p99_time,
-                               prediction.figures->peak_memory, jsonNumber(score.iou()), jsonNumber(score.precision()),
-                               jsonNumber(score.recall()), toJson(prediction)));
+                               figures.median_time, figures.p99_time, figures.peak_memory, jsonNumber(score.iou()),
+                               jsonNumber(score.precision()), jsonNumber(score.recall()), toJson(prediction)));
 }
 
 void run(const CLI::App& app, const Arguments& arguments, const LabelBagOptions& options) {

@@ -116,16 +116,21 @@ std::size_t peakMemory() {
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024U;
 }
 
-RunFigures figuresOf(const DriveRun& drive, const Config& config) {
+RunFigures figuresOf(const std::vector<double>& times, const Config& config) {
   RunFigures figures;
   figures.method = fmt::format("{}, {} m", nameOf(config.method), config.voxel_size);
-  figures.scans = drive.times().size();
-  figures.median_time = quantile(drive.times(), 0.5);
-  figures.p99_time = quantile(drive.times(), 0.99);
+  figures.scans = times.size();
+  figures.median_time = quantile(times, 0.5);
+  figures.p99_time = quantile(times, 0.99);
+  figures.peak_memory = peakMemory();
+  return figures;
+}
+
+RunFigures figuresOf(const DriveRun& drive, const Config& config) {
+  RunFigures figures = figuresOf(drive.times(), config);
   figures.median_cpu_time = quantile(drive.cpuTimes(), 0.5);
   const double cpu_time = std::accumulate(drive.cpuTimes().begin(), drive.cpuTimes().end(), 0.0);
   figures.mean_cpu_time = cpu_time / static_cast<double>(std::max<std::size_t>(figures.scans, 1));
-  figures.peak_memory = peakMemory();
   figures.method_memory = drive.memoryBytes();
   return figures;
 }

@@ -72,7 +72,9 @@ class ProgressBar {
 /// The most memory the process ever had resident [bytes].
 std::size_t peakMemory();
 
-/// What a run over a drive took, of this process.
+/// What judging scans took, of this process; `times` are a scan's [s].
+RunFigures figuresOf(const std::vector<double>& times, const Config& config);
+/// The same with the CPU times and the method's own memory.
 RunFigures figuresOf(const DriveRun& drive, const Config& config);
 
 /// "12.3 MB".

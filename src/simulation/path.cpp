@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "donex/core/pi.h"
+
 namespace donex::simulation {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 double wrapAngle(double angle) { return angle - 2.0 * kPi * std::round(angle / (2.0 * kPi)); }
 

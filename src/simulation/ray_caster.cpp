@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "donex/core/pi.h"
+
 namespace donex::simulation {
 namespace {
 
-constexpr float kPi = 3.14159265f;
+constexpr auto kHalfTurn = static_cast<float>(kPi);  // [rad]
 constexpr int kSectorColumns = 8;
 constexpr float kRoundingAngle = 2e-4f;  // [rad]
 constexpr float kRounding = 1e-3f;       // [m]
@@ -57,7 +59,7 @@ RayCaster::Extent RayCaster::extentOf(const Target& target, const Stretch& stret
     high_side = std::max(high_side, side);
   }
   const float rise = edges.row(2).cwiseAbs().sum();
-  Extent extent{std::max(near, 0.0f), -kMiss, kMiss, kNoTarget, 0.0f, kPi};
+  Extent extent{std::max(near, 0.0f), -kMiss, kMiss, kNoTarget, 0.0f, kHalfTurn};
   if (near < 0.05f) return extent;  // around the sensor: it may be seen in any direction
 
   const float low = center.z() - rise;
@@ -77,8 +79,8 @@ void RayCaster::distribute(const Extent& extent, const Stretch& stretch) {
   const int count = static_cast<int>(sectors_.size());
   const int first_open = sectorOf(stretch.first_column);
   const int last_open = sectorOf(stretch.end_column - 1);
-  const float columns_per_radian = static_cast<float>(model_.columns()) / (2.0f * kPi);
-  const auto columnAt = [&](float azimuth) { return (kPi - azimuth) * columns_per_radian - 0.5f; };
+  const float columns_per_radian = static_cast<float>(model_.columns()) / (2.0f * kHalfTurn);
+  const auto columnAt = [&](float azimuth) { return (kHalfTurn - azimuth) * columns_per_radian - 0.5f; };
   int first = sectorOf(static_cast<int>(std::floor(columnAt(extent.azimuth + extent.half_angle))));
   int last = sectorOf(static_cast<int>(std::ceil(columnAt(extent.azimuth - extent.half_angle))));
   if (last - first >= count) {

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
+#include "donex/core/pi.h"
+
 namespace donex::simulation {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// One side of a road, seen from its middle: `side` 1 is left, -1 right.
 class Side {

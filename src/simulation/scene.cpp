@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "donex/core/pi.h"
 #include "donex/simulation/simulator.h"
 
 namespace donex::simulation {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kWheelbase = 2.8;  // [m]
 constexpr double kHalfTrack = 0.8;  // [m]
 

@@ -1,13 +1,13 @@
 // A roundabout with four arms; two of them are the ends of one winding road.
 #include <cmath>
 
+#include "donex/core/pi.h"
 #include "roadside.h"
 #include "scenes.h"
 
 namespace donex::simulation {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kLane = 1.55;      // beside a road's middle [m]
 constexpr double kHalfWidth = 5.3;  // of the arms [m]
 constexpr double kFarArm = 200.0;   // [m]

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "donex/core/pi.h"
+
 namespace donex::simulation {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kSteelReflectivity = 0.45;
 
 Eigen::Matrix3f turned(double yaw) {

@@ -1,13 +1,13 @@
 // Two carriageways with three lanes each, guard rails, bridges, gantries.
 #include <cmath>
 
+#include "donex/core/pi.h"
 #include "roadside.h"
 #include "scenes.h"
 
 namespace donex::simulation {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kHalfWidth = 16.0;  // middle to the outer edge of the hard shoulder [m]
 constexpr double kInnerLane = 3.7;   // middle of the road to the middle of the fast lane [m]
 constexpr double kLaneWidth = 3.75;  // [m]

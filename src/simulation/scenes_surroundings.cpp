@@ -1,13 +1,13 @@
 // The hard cases whose difficulty is what stands around, and where the ego vehicle goes.
 #include <cmath>
 
+#include "donex/core/pi.h"
 #include "roadside.h"
 #include "scenes.h"
 
 namespace donex::simulation {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kHalfWidth = 5.3;  // [m]
 
 SharedPath addRoad(SceneBuilder& builder, double straight, double radius, const Roadside& roadside) {

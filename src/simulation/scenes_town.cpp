@@ -1,13 +1,12 @@
 // A street, a crossroads, a roundabout.
 #include <cmath>
 
+#include "donex/core/pi.h"
 #include "roadside.h"
 #include "scenes.h"
 
 namespace donex::simulation {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Round a block of houses, to the left.
 SharedPath blockCircuit(Random& random) {

@@ -4,10 +4,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "donex/core/pi.h"
+
 namespace donex::simulation {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// `count` beams from `lowest` upwards, evenly [deg].
 void append(SensorModel& model, double lowest, double spacing, int count) {

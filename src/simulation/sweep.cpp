@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "donex/core/pi.h"
 #include "donex/core/rigid_motion.h"
 #include "donex/simulation/random.h"
 
 namespace donex::simulation {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kStretches = 12;  // of a turn with distortion: the vehicle moves little in each
 constexpr int kKnots = 24;      // poses a turn; in between the motion is straight on
 constexpr int kGround = -2;     // as Hit::target

@@ -1,13 +1,12 @@
 #include <gtest/gtest.h>
 
+#include "donex/core/pi.h"
 #include "donex/simulation/path.h"
 #include "donex/simulation/random.h"
 #include "donex/simulation/speed_profile.h"
 
 namespace donex::simulation {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 Path randomPath(Random& random) {
   Path path({random.uniform(-50.0, 50.0), random.uniform(-50.0, 50.0)}, random.uniform(-kPi, kPi));

@@ -1,0 +1,8 @@
+// What C++17 has no name for.
+#pragma once
+
+namespace donex {
+
+inline constexpr double kPi = 3.14159265358979323846;
+
+}  // namespace donex
