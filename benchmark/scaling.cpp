@@ -59,7 +59,6 @@ void registerScaling() {
       setting.reach = std::stod(reach);
       add("reach", reach, setting);
     }
-    if (method != Method::kDonex3d) continue;
     setting.reach = Setting().reach;
     setting.echoes = 500000;
     for (const char* threads : {"1", "2"}) {
