@@ -25,8 +25,11 @@ void BirthMemory::shift(const Eigen::Isometry3d& odom_from_base) {
   if (moved.isZero()) return;
   for (std::uint32_t brick = 0; brick < bricks_.size();) {
     const bool stays = window_.contains(layout_.cornerOf(bricks_[brick].slot) - moved);
-    if (stays) ++brick;
-    else forget(brick);  // another brick takes its number
+    if (stays) {
+      ++brick;
+    } else {
+      forget(brick);  // another brick takes its number
+    }
   }
   layout_.scrollTo(window_.minIndex());
 }

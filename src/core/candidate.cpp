@@ -8,8 +8,9 @@ namespace {
 constexpr double kLongest = 25.0;     // [m]
 constexpr double kLong = 2.0;         // [m]
 constexpr double kLeastShare = 0.15;  // of all echoes that must be new
-constexpr double kFollowed = 1.5;     // [m] off the expected place
 constexpr double kAround = 0.2;       // [m]
+constexpr double kOtherView = 0.5;    // share of the extent that another view of the same thing may not show
+constexpr double kFrayed = 0.7;       // [m] and as much at its ends, where few echoes hit: that counts for small things
 constexpr double kThinAngle = 0.02;   // [rad]
 constexpr double kThinReach = 20.0;   // [m] farther away beams are too sparse to tell
 
@@ -41,7 +42,7 @@ void describeEchoes(const JudgedScan& scan, Candidate& candidate) {
 }
 
 bool alike(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return ((a - b).array().abs() <= (0.5 * a.cwiseMax(b)).array() + 0.7).all();
+  return ((a - b).array().abs() <= (kOtherView * a.cwiseMax(b)).array() + kFrayed).all();
 }
 
 bool isTooLong(const Candidate& candidate) { return candidate.extent().maxCoeff() > kLongest; }

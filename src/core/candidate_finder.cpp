@@ -7,14 +7,15 @@
 namespace donex {
 namespace {
 
-constexpr double kAcrossAngle = 0.01;          // [rad] wider than any sensor's step in azimuth
-constexpr double kUpAngle = 0.015;             // [rad]
 constexpr double kRim = 0.3, kTightRim = 0.1;  // [m] around a thing
 constexpr std::size_t kWorthCutting = 10;      // echoes
 constexpr std::size_t kTooSmall = std::numeric_limits<std::size_t>::max();
 
 Clusters::Settings clustersOf(const ObjectConfig& config, double cell) {
-  return {cell, config.height, kAcrossAngle, kUpAngle};
+  Clusters::Settings settings;
+  settings.cell = cell;
+  settings.height = config.height;
+  return settings;
 }
 
 }  // namespace

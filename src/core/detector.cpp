@@ -2,10 +2,8 @@
 
 #include <stdexcept>
 
-#include "comparison_detectors.h"
+#include "detectors.h"
 #include "donex/core/people_remover.h"
-#include "evidence_detector.h"
-#include "paper_detectors.h"
 
 namespace donex {
 

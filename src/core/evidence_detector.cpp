@@ -1,4 +1,4 @@
-#include "evidence_detector.h"
+#include "detectors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,8 +16,6 @@ namespace {
 constexpr float kSkirt = 0.07F;             // [m] from here up to the ground clearance echoes may belong to an object
 constexpr std::size_t kExpectedAhead = 12;  // echoes; long enough for memory to answer
 constexpr double kHistorySpacing = 0.09;    // [s] a 10 Hz sensor's every scan, a 20 Hz sensor's every second
-
-double reachOf(const Region& r) { return std::hypot(std::max(-r.x_min, r.x_max), std::max(-r.y_min, r.y_max)); }
 
 SightHistory historyOf(const EvidenceConfig& e) {
   constexpr double kRadians = 3.14159265358979 / 180.0;
@@ -43,7 +41,7 @@ class EvidenceDetector : public Detector {
     clock_.begin(scan.stamp);
     newness_.shift(scan.odom_from_base);  // voxel shift (paper, "Ego motion")
     newness_.window().enter(scan, scan_);
-    placePoints(scan.stamp);
+    place(scan.stamp);
     findGround();   // step 5
     judgePlaces();  // steps 1 to 4, asked of the scans before this one
     history_.add(scan, judged_.is_echo);
@@ -86,19 +84,12 @@ class EvidenceDetector : public Detector {
   }
 
  private:
-  void placePoints(double stamp) {
+  void place(double stamp) {
     const GridWindow& window = newness_.window();
-    const auto size = static_cast<float>(window.voxelSize());
-    const Eigen::Vector3d corner = window.minIndex().template cast<double>() * window.voxelSize();
     judged_.stamp = stamp;
-    judged_.odom_from_points = window.odomFromGrid() * Eigen::Translation3d(corner);
-    judged_.sensor = scan_.origin * size;
-    resizeTo(judged_.points, scan_.echoes.size());
-    resizeTo(judged_.is_echo, scan_.echoes.size());
-    for (std::size_t i = 0; i < scan_.echoes.size(); ++i) {
-      judged_.points[i] = scan_.echoes[i] * size;
-      judged_.is_echo[i] = std::isnan(scan_.echoes[i].x()) ? 0 : 1;
-    }
+    judged_.odom_from_points = window.odomFromWindow();
+    judged_.sensor = scan_.origin * static_cast<float>(window.voxelSize());
+    placePoints(window, scan_, judged_.points, judged_.is_echo);
   }
 
   void findGround() {
@@ -116,10 +107,11 @@ class EvidenceDetector : public Detector {
       const float height = judged_.heights[i];
       if (scan_.inside[i] == 0) continue;
       const bool is_above = !enabled || height > clearance;
-      if (is_above)
+      if (is_above) {
         judged_.standing[i] = Standing::kIn;
-      else if (height > kSkirt)
+      } else if (height > kSkirt) {
         judged_.standing[i] = Standing::kSkirt;
+      }
     }
   }
 
@@ -128,8 +120,8 @@ class EvidenceDetector : public Detector {
     judged_.places.assign(judged_.points.size(), Place::kUnobserved);
     for (std::size_t i = 0; i < judged_.points.size(); ++i) {
       const std::size_t later = i + kExpectedAhead;
-      if (later < judged_.points.size() && judged_.standing[later] == Standing::kIn)
-        newness_.expect(scan_.echoes[later]);
+      const bool will_be_asked = later < judged_.points.size() && judged_.standing[later] == Standing::kIn;
+      if (will_be_asked) newness_.expect(scan_.echoes[later]);
       if (judged_.standing[i] != Standing::kIn) continue;
       judged_.places[i] = newness_.judge(scan_.echoes[i], judged_.points[i], clock_, history_);
     }
@@ -163,6 +155,7 @@ class EvidenceDetector : public Detector {
     if (judged_.standing[i] != Standing::kIn) return EchoReason::kGround;
     switch (judged_.places[i]) {
       case Place::kNew: return EchoReason::kNewAlone;
+      case Place::kAtSurface:
       case Place::kSettled: return EchoReason::kSettled;
       case Place::kUnobserved: break;
     }

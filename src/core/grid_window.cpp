@@ -16,13 +16,9 @@ int floorToBrick(double voxels) {
   return GridWindow::kBrick * static_cast<int>(std::floor(voxels / GridWindow::kBrick));
 }
 
-double farthestCorner(const Region& r) {
-  return std::hypot(std::max(-r.x_min, r.x_max), std::max(-r.y_min, r.y_max));
-}
-
 /// The region, as a box around the vehicle in which it stays however the vehicle turns [m].
 Region sweptRegion(const Region& r) {
-  const double reach = farthestCorner(r);
+  const double reach = reachOf(r);
   const double rise = kLargestTilt * reach;
   return {-reach, reach, -reach, reach, r.z_min - rise, r.z_max + rise};
 }
@@ -32,6 +28,10 @@ Region coveredRegion(const Config& config) {
 }
 
 }  // namespace
+
+double reachOf(const Region& region) {
+  return std::hypot(std::max(-region.x_min, region.x_max), std::max(-region.y_min, region.y_max));
+}
 
 Eigen::Vector3d GridWindow::extentOf(const Config& config) {
   const Region covered = coveredRegion(config);
@@ -98,6 +98,21 @@ GridOutline GridWindow::outline() const {
   return {odom_from_grid_, low, low + extent_.cast<double>() * voxel_size_};
 }
 
+void placePoints(const GridWindow& window, const GridScan& scan, std::vector<Eigen::Vector3f>& points,
+                 std::vector<std::uint8_t>& is_echo) {
+  const auto size = static_cast<float>(window.voxelSize());
+  resizeTo(points, scan.echoes.size());
+  resizeTo(is_echo, scan.echoes.size());
+  for (std::size_t i = 0; i < scan.echoes.size(); ++i) {
+    points[i] = scan.echoes[i] * size;
+    is_echo[i] = std::isnan(scan.echoes[i].x()) ? 0 : 1;
+  }
+}
+
+bool isBefore(const Index3& a, const Index3& b) {
+  return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+}
+
 std::vector<Eigen::Vector3f> cellCenters(const GridWindow& window, const GridScan& scan,
                                          const std::vector<std::uint8_t>& marked) {
   std::vector<Index3> voxels;
@@ -108,10 +123,7 @@ std::vector<Eigen::Vector3f> cellCenters(const GridWindow& window, const GridSca
 }
 
 std::vector<Eigen::Vector3f> cellCenters(const GridWindow& window, std::vector<Index3> voxels) {
-  const auto before = [](const Index3& a, const Index3& b) {
-    return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
-  };
-  std::sort(voxels.begin(), voxels.end(), before);
+  std::sort(voxels.begin(), voxels.end(), isBefore);
   voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
   std::vector<Eigen::Vector3f> centers;
   centers.reserve(voxels.size());

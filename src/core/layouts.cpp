@@ -12,8 +12,6 @@ struct Wrap {
   int shift_x, shift_y, shift_z;
 };
 
-inline int wrapped(int i, int n) { return i >= n ? i - n : i; }
-
 DONEX_WIDE_LOOPS void locateCells(const Wrap& layout, const EchoBlock& block, BlockSlots& result) {
   const Wrap w = layout;
   const int none = w.width * w.depth;

@@ -2,10 +2,10 @@
 
 #include <cstdint>
 
+#include "detectors.h"
 #include "donex/core/grid_2d.h"
 #include "donex/core/grid_3d.h"
 #include "donex/core/grid_window.h"
-#include "evidence_detector.h"
 
 namespace donex {
 namespace {

@@ -8,7 +8,6 @@ namespace {
 
 constexpr std::size_t kPresentPoints = 4 * TraceHistory::kPoints;
 constexpr std::size_t kLeastPoints = 5;
-constexpr int kLeastLeft = 3;        // points of a trace
 constexpr double kStillShare = 0.4;  // of the trace may lie near a surface
 constexpr double kFit = 0.25;        // [m] between a point and its counterpart
 constexpr double kFitShare = 0.6;    // of the trace must have one

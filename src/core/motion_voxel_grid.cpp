@@ -10,7 +10,7 @@
 #include <unordered_map>
 
 #include "comparison_detector.h"
-#include "comparison_detectors.h"
+#include "detectors.h"
 #include "donex/core/region_planes.h"
 #include "donex/core/sight_history.h"
 #include "donex/core/voxel_key.h"
@@ -34,11 +34,9 @@ class MotionVoxelGridDetector : public ComparisonDetector<Detector> {
  protected:
   void judge(const Scan& scan, const GridScan& in_grid, EchoLabels& labels) override {
     ++scan_;
-    placePoints(in_grid);
-    ground_.fit(origin_, points_, is_echo_);
-    Eigen::Isometry3d odom_from_window = window().odomFromGrid();
-    odom_from_window.translate(window().minIndex().cast<double>() * window().voxelSize());
-    sights_.askFrom(odom_from_window);
+    placePoints(window(), in_grid, points_, is_echo_);
+    ground_.fit(in_grid.origin * static_cast<float>(window().voxelSize()), points_, is_echo_);
+    sights_.askFrom(window().odomFromWindow());
     std::unordered_map<VoxelKey, bool, VoxelHash> verdicts;
     for (std::size_t i = 0; i < labels.dynamic.size(); ++i) {
       const bool is_obstacle = in_grid.inside[i] != 0 && ground_.heightOf(points_[i]) > kGround;
@@ -70,17 +68,6 @@ class MotionVoxelGridDetector : public ComparisonDetector<Detector> {
     std::int64_t last_scan = 0;
     std::uint32_t bits = 0;
   };
-
-  void placePoints(const GridScan& in_grid) {
-    const auto size = static_cast<float>(window().voxelSize());
-    origin_ = in_grid.origin * size;
-    points_.resize(in_grid.echoes.size());
-    is_echo_.resize(points_.size());
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      points_[i] = in_grid.echoes[i] * size;
-      is_echo_[i] = points_[i].allFinite() ? 1 : 0;
-    }
-  }
 
   double hitsOf(const Index3& voxel) const {
     const auto found = hits_.find(keyOf(voxel));
@@ -121,7 +108,6 @@ class MotionVoxelGridDetector : public ComparisonDetector<Detector> {
   SightHistory sights_;
   RegionPlanes ground_;
   std::unordered_map<VoxelKey, Hits, VoxelHash> hits_;  ///< by voxel of the odometry frame
-  Eigen::Vector3f origin_ = Eigen::Vector3f::Zero();
   std::vector<Eigen::Vector3f> points_;  ///< in the grid's window [m]
   std::vector<std::uint8_t> is_echo_;
 };

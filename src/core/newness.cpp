@@ -63,7 +63,8 @@ Place Newness3d::judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& 
     record.last_hit = clock.scan();
   }
   if (!clock.isYoung(record.birth, record.was_free)) return Place::kSettled;
-  return record.was_free && !record.at_surface ? Place::kNew : Place::kUnobserved;
+  if (record.at_surface) return Place::kAtSurface;
+  return record.was_free ? Place::kNew : Place::kUnobserved;
 }
 
 bool Newness3d::touchesSettled(const Index3& voxel, const ScanClock& clock) const {
@@ -102,6 +103,7 @@ void Newness2d::settle(Cell& cell, const ScanClock& clock) const {
   };
   settle_range(cell.arrived, cell.arrived_birth, true);
   settle_range(cell.found, cell.found_birth, false);
+  if (cell.found.empty()) cell.at_surface = HeightRange{};
 }
 
 Place Newness2d::judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& point, const ScanClock& clock,
@@ -124,14 +126,16 @@ Place Newness2d::judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& 
     cell.settled = HeightRange{};
   }
   if (cell.arrived.holds(height)) return Place::kNew;
-  if (cell.found.holds(height) && !missed) return Place::kUnobserved;
+  if (cell.found.holds(height) && !missed) return cell.placeInFound(height);
   const bool was_free = !is_first_scan && wasFree(config_, history, point, kBeforeEverything, false, false);
   const bool at_surface = was_free && config_.neighbourhood && touchesSettled(voxel.x(), voxel.y(), height);
-  HeightRange& range = was_free && !at_surface ? cell.arrived : cell.found;
-  std::uint32_t& birth = was_free && !at_surface ? cell.arrived_birth : cell.found_birth;
+  const bool comes = was_free && !at_surface;
+  HeightRange& range = comes ? cell.arrived : cell.found;
+  std::uint32_t& birth = comes ? cell.arrived_birth : cell.found_birth;
   if (range.empty()) birth = clock.scan();
   range.extend(height);
-  return was_free && !at_surface ? Place::kNew : Place::kUnobserved;
+  if (at_surface) cell.at_surface.extend(height);
+  return comes ? Place::kNew : cell.placeInFound(height);
 }
 
 bool Newness2d::touchesSettled(int x, int y, float height) const {

@@ -9,14 +9,12 @@
 namespace donex {
 namespace {
 
-constexpr double kLargestStep = 4.0;   // [m] between two scans, before a velocity is known
-constexpr double kFollowedStep = 1.5;  // [m] off the predicted place
-constexpr double kLost = 0.6;          // [s] unseen for longer: forgotten
+constexpr double kLargestStep = 4.0;  // [m] between two scans, before a velocity is known
+constexpr double kLost = 0.6;         // [s] unseen for longer: forgotten
 // An object's former place is asked for after these times [s]: soon for the fast, later again for the slow.
 constexpr std::array<double, 3> kLookBack = {0.3, 0.6, 1.0};
 constexpr double kSmoothing = 0.3;  // share of the newest displacement in the velocity
 constexpr int kScansToBelieve = 2;
-constexpr int kLeastLeft = 3;             // points of a trace
 constexpr double kMovesOn = 1.0;          // [s] after it was seen to move as one, a thing does so still
 constexpr double kSurelyMoving = 5.0;     // [m/s] a hedge that comes into view step by step seems slower
 constexpr double kReleaseAfter = 0.3;     // [s] but its parts are released sooner
@@ -79,7 +77,7 @@ void ObjectTracker::match(double stamp, const Candidates& candidates) {
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     const Track& track = tracks_[t];
     const Eigen::Vector3d predicted = track.centerAt(stamp);
-    const double step = track.first_seen < track.last_seen ? kFollowedStep : kLargestStep;
+    const double step = track.first_seen < track.last_seen ? kFollowed : kLargestStep;
     for (std::size_t c = 0; c < candidates.size(); ++c) {
       const double distance = (candidates[c].center() - predicted).norm();
       if (distance > step || !alike(track.extent, candidates[c].extent())) continue;

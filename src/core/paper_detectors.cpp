@@ -1,4 +1,4 @@
-#include "paper_detectors.h"
+#include "detectors.h"
 
 #include <algorithm>
 
@@ -9,10 +9,6 @@
 
 namespace donex {
 namespace {
-
-bool isBefore(const Index3& a, const Index3& b) {
-  return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
-}
 
 /// Voxels of the window that the scan hits, in order.
 std::vector<Index3> hitVoxels(const GridWindow& window, const Scan& scan) {
@@ -84,10 +80,11 @@ class PaperDetector : public Detector {
       const Eigen::Vector3f center = (window.odomFromGrid() * window.indexToCenter(voxel)).cast<float>();
       const bool stays = std::binary_search(remembered.begin(), remembered.end(), voxel, isBefore);
       const bool is_hit = std::binary_search(hit_.begin(), hit_.end(), voxel, isBefore);
-      if (!stays)
+      if (!stays) {
         cells.seen_through.push_back(center);
-      else if (!is_hit)
+      } else if (!is_hit) {
         cells.shadowed.push_back(center);
+      }
     }
     return cells;
   }

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "comparison_detector.h"
-#include "comparison_detectors.h"
+#include "detectors.h"
 #include "donex/core/range_image.h"
 
 namespace donex {

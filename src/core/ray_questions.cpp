@@ -224,8 +224,9 @@ std::uint64_t RayIndex::seenThrough(std::uint64_t candidates, const Index3& corn
 
 std::uint64_t RayIndex::seenThrough(std::uint64_t candidates, const BrickAhead& at, const Index3& corner) const {
   BrickAhead brick = at;
-  for (int i = 0; i <= kEdge; ++i)
+  for (int i = 0; i <= kEdge; ++i) {
     brick.per_depth[static_cast<std::size_t>(i)] = 1.0F / (brick.low.x() + static_cast<float>(i));
+  }
   Shadow shadow = shadowOf(brick, Index3::Zero(), kEdge);
   findBins(shadow);
   if (!anyRayReaches(shadow)) return 0;

@@ -8,7 +8,7 @@
 #include <deque>
 
 #include "comparison_detector.h"
-#include "comparison_detectors.h"
+#include "detectors.h"
 #include "donex/core/motion_belief.h"
 #include "donex/core/scan_mesh.h"
 

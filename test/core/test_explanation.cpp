@@ -78,6 +78,37 @@ TEST(Explanation, reasonsAgreeWithTheLabels) {
   }
 }
 
+/// A wall all around, `range` [m] away.
+Scan wallAt(double range, double stamp) {
+  std::vector<Eigen::Vector3f> echoes;
+  for (int azimuth = 0; azimuth < 720; ++azimuth) {
+    for (int beam = 0; beam < 5; ++beam) {
+      const double angle = azimuth * M_PI / 360.0, slope = 0.02 * beam + 0.01;
+      const Eigen::Vector3d direction = Eigen::Vector3d(std::cos(angle), std::sin(angle), slope).normalized();
+      echoes.push_back((range * direction).cast<float>());
+    }
+  }
+  return scanOf(stamp, std::move(echoes));
+}
+
+TEST(Explanation, theFlickerOfASurfaceWasSeenFreeAndIsSettled) {
+  for (const Method method : {Method::kDonex3d, Method::kDonex2d}) {
+    Config config;
+    config.method = method;
+    config.evidence.ground = false;
+    config.evidence.sight_margin = 0.02;  // so that the place before the wall is seen free at all
+    const auto detector = makeDetector(config);
+    EchoLabels labels;
+    for (int k = 0; k < 10; ++k) detector->process(wallAt(10.05, 0.1 * k), labels);
+    for (int k = 10; k < 13; ++k) {
+      detector->process(wallAt(9.95, 0.1 * k), labels);  // across the border of voxels at 10 m
+      EXPECT_EQ(labels.dynamic[0], 0);
+      EXPECT_EQ(labels.observed[0], 1);
+      EXPECT_EQ(detector->reasons()[0], EchoReason::kSettled);
+    }
+  }
+}
+
 TEST(Explanation, cellsWithEvidenceAreThoseThatAreNotHit) {
   const auto drive = testing::simulatedDrive("intersection", 32, 10, 3);
   const Config config;

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "donex/core/ground.h"
+#include "support/ground_oracle.h"
 #include "support/height_world.h"
 
 namespace donex {
@@ -171,6 +172,58 @@ TEST(Ground, EchoesThatAreNoneAndEmptyScansTellNothing) {
   EXPECT_TRUE(std::isfinite(ground.heightOf({5.0F, 0.0F, 0.0F})));
   ground.estimate({0.0F, 0.0F, 1.8F}, echoes, std::vector<std::uint8_t>(echoes.size(), 0));
   EXPECT_FALSE(std::isfinite(ground.heightOf({5.0F, 0.0F, 0.0F}))) << "the scan before is forgotten";
+}
+
+/// A rough world around a sensor somewhere: echoes of the ground, of things on it, of nothing, and none.
+struct RandomScan {
+  explicit RandomScan(unsigned seed) {
+    std::mt19937 random(seed);
+    const auto draw = [&](float low, float high) { return std::uniform_real_distribution<float>(low, high)(random); };
+    sensor = {draw(-50.0F, 50.0F), draw(-50.0F, 50.0F), draw(-5.0F, 5.0F)};
+    const float x_slope = draw(-0.12F, 0.12F), y_slope = draw(-0.12F, 0.12F), roughness = draw(0.0F, 0.3F);
+    const int count = seed % 4 == 0 ? 60 : 6000;  // few: most cells hold no echo
+    for (int i = 0; i < count; ++i) {
+      const float reach = draw(0.0F, 1.0F) < 0.3F ? 8.0F : 1.2F * static_cast<float>(kReach);
+      const float x = draw(-reach, reach), y = draw(-reach, reach);
+      const float kind = draw(0.0F, 1.0F);
+      const bool on_thing = std::sin(0.7F * x) * std::sin(0.5F * y) > 0.5F;
+      const float above = kind < 0.02F ? -draw(0.0F, 4.0F) : on_thing ? draw(0.1F, 2.0F) : draw(0.0F, roughness);
+      const float z = -1.8F + x_slope * x + y_slope * y + above;
+      echoes.emplace_back(sensor + Eigen::Vector3f(x, y, kind > 0.99F ? std::nanf("") : z));
+      is_echo.push_back(kind > 0.95F ? 0 : 1);
+    }
+  }
+
+  Eigen::Vector3f sensor;
+  std::vector<Eigen::Vector3f> echoes;
+  std::vector<std::uint8_t> is_echo;
+};
+
+TEST(Ground, IsThatOfItsDefinition) {
+  int continued = 0, interrupted = 0, outside = 0;
+  Ground ground(kReach);  // one for all scans: nothing of the one before is left
+  for (unsigned seed = 1; seed <= 24; ++seed) {
+    const RandomScan scan(seed);
+    ground.estimate(scan.sensor, scan.echoes, scan.is_echo);
+    std::vector<float> heights;
+    ground.heightsOf(scan.echoes, heights);
+    ASSERT_EQ(heights.size(), scan.echoes.size());
+    oracle::GroundMap map(kReach, scan.sensor, scan.echoes, scan.is_echo);
+    for (std::size_t i = 0; i < heights.size(); ++i) {
+      if (scan.is_echo[i] == 0) continue;
+      const double expected = map.heightOf(scan.echoes[i]);
+      outside += std::isinf(expected) ? 1 : 0;
+      ASSERT_EQ(std::isinf(heights[i]), std::isinf(expected));
+      ASSERT_EQ(heights[i], ground.heightOf(scan.echoes[i]));
+      if (std::isinf(expected)) continue;
+      ASSERT_NEAR(heights[i], expected, 1e-3) << "seed " << seed << " echo " << i;
+    }
+    continued += map.continued();
+    interrupted += map.interrupted();
+  }
+  EXPECT_GT(continued, 5000);
+  EXPECT_GT(interrupted, 1000);
+  EXPECT_GT(outside, 1000);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // What a scan proves to be free: against a plain reading of the header, and on scenes small enough to see.
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -49,6 +50,24 @@ class AgainstPlainReading : public ::testing::TestWithParam<Case> {
   /// Around the seam of the azimuth.
   Sights::Pixel drawPixel() { return {(Sights::kColumns - 20 + draw(0, 40)) % Sights::kColumns, draw(180, 240)}; }
 
+  static constexpr float kMargin = 0.5F;  ///< [m]
+
+  /// Asks somewhere in a pixel that saw as far as `range`, often near that; `seen` counts the answers.
+  template <class Answer>
+  void ask(const Sights::Pixel& pixel, const std::optional<double>& range, std::array<int, 4>& seen,
+           Answer&& answer) {
+    constexpr double kRounding = 0.03;  // ranges are rounded down to 0.02 m
+    const double near_surface = range ? *range + draw(-1.0, 1.0) : 10.0;
+    const double asked = draw(0, 1) == 0 ? draw(0.6, 60.0) : std::max(near_surface, 0.6);
+    const double beyond = range ? *range - asked : 0.0;
+    if (std::abs(std::abs(beyond) - kMargin) < kRounding) return;
+    Sight expected = Sight::kUnknown;
+    if (range) expected = beyond > kMargin ? Sight::kFree : beyond > -kMargin ? Sight::kSurface : Sight::kHidden;
+    ASSERT_EQ(answer(pointIn(pixel, asked)), expected)
+        << "column " << pixel[0] << " row " << pixel[1] << " asked " << asked << " seen " << range.value_or(-1.0);
+    ++seen[static_cast<std::size_t>(expected)];
+  }
+
   std::mt19937 random_{GetParam().seed};
 };
 
@@ -63,23 +82,15 @@ TEST_P(AgainstPlainReading, EveryPixelAtRandomRanges) {
   image.build(echoes, is_echo, GetParam().reading);
   const Sights sights(echoes, is_echo, GetParam().reading);
 
-  constexpr float kMargin = 0.5F;
-  constexpr double kRounding = 0.03;  // ranges are rounded down to 0.02 m
-  std::array<int, 4> seen{};
+  std::array<int, 4> seen{}, through_gaps{};
   for (int i = 0; i < 8000; ++i) {
     const Sights::Pixel pixel = drawPixel();
-    const auto range = sights.rangeAt(pixel);
-    const double near_surface = range ? *range + draw(-1.0, 1.0) : 10.0;
-    const double asked = draw(0, 1) == 0 ? draw(0.6, 60.0) : std::max(near_surface, 0.6);
-    const double beyond = range ? *range - asked : 0.0;
-    if (std::abs(std::abs(beyond) - kMargin) < kRounding) continue;
-    Sight expected = Sight::kUnknown;
-    if (range) expected = beyond > kMargin ? Sight::kFree : beyond > -kMargin ? Sight::kSurface : Sight::kHidden;
-    ASSERT_EQ(image.at(pointIn(pixel, asked), kMargin), expected)
-        << "column " << pixel[0] << " row " << pixel[1] << " asked " << asked << " seen " << range.value_or(-1.0);
-    ++seen[static_cast<std::size_t>(expected)];
+    ask(pixel, sights.rangeAt(pixel), seen, [&](const auto& point) { return image.at(point, kMargin); });
+    ask(pixel, sights.rangeThroughGaps(pixel), through_gaps,
+        [&](const auto& point) { return image.throughGaps(point, kMargin); });
   }
   for (const int count : seen) EXPECT_GT(count, 20);
+  for (const int count : through_gaps) EXPECT_GT(count, 20);
 }
 
 std::vector<Case> cases() {
@@ -158,6 +169,21 @@ TEST(SightImage, SparseBeamsLeaveNoHolesUpToTheGap) {
   EXPECT_EQ(imageOf(sparse, {true, 0.038}).at(between, 0.5F), Sight::kFree);
   EXPECT_EQ(imageOf(sparse, {true, 0.030}).at(between, 0.5F), Sight::kUnknown);
   EXPECT_EQ(imageOf(sparse, {false, 0.038}).at(between, 0.5F), Sight::kUnknown);
+}
+
+TEST(SightImage, WhoHandsOnIsAskedOnButNoMoreThroughGaps) {
+  SightImage older = imageOf(shell(20.0, 6)), newest;
+  const Eigen::Vector3f between = Sights::pointIn({300, 150 + 6 * 8 + 3}, 0.0, 0.0, 10.0);
+  const Eigen::Vector3f on_beam = Sights::pointIn({300, 150 + 6 * 8}, 0.0, 0.0, 10.0);
+  EXPECT_EQ(older.at(between, 0.5F), Sight::kFree);
+  EXPECT_EQ(older.throughGaps(between, 0.5F), Sight::kUnknown) << "no line of sight goes there";
+  EXPECT_EQ(older.throughGaps(on_beam, 0.5F), Sight::kFree);
+  older.handOn(newest);
+  EXPECT_EQ(older.at(between, 0.5F), Sight::kFree);
+  EXPECT_EQ(older.throughGaps(on_beam, 0.5F), Sight::kUnknown);
+  const Echoes nearer = shell(8.0, 6);
+  newest.build(nearer, std::vector<std::uint8_t>(nearer.size(), 1), {});
+  EXPECT_EQ(newest.throughGaps(on_beam, 0.5F), Sight::kHidden);
 }
 
 TEST(SightImage, WhatIsBuiltBeforeIsForgotten) {

@@ -1,14 +1,17 @@
 // The fast grids against the oracle, and the default configuration's labels, on whole drives: real ones
 // where DONEX_SHARED_DATA names a folder of sequences, and always a simulated one.
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 
 #include <gtest/gtest.h>
 
 #include "donex/core/detector.h"
+#include "donex/core/ground.h"
 #include "donex/io/evaluation.h"
 #include "donex/io/sequence.h"
 #include "donex/simulation/simulator.h"
+#include "support/ground_oracle.h"
 #include "support/oracle.h"
 
 namespace donex {
@@ -81,6 +84,26 @@ TEST_P(Drives, Paper3dGivesTheOraclesLabels) {
 
 TEST_P(Drives, Paper2dGivesTheOraclesLabels) {
   expectOracleLabels<oracle::Donex2d>(Method::kDonex2d, drive(GetParam(), 10));
+}
+
+TEST_P(Drives, TheGroundIsThatOfItsDefinition) {
+  constexpr double kReach = 60.0;
+  Ground ground(kReach);
+  for (const LabelledScan& labelled : drive(GetParam(), 2)) {
+    const std::vector<Eigen::Vector3f>& echoes = labelled.scan.echoes;
+    std::vector<std::uint8_t> is_echo(echoes.size());
+    for (std::size_t i = 0; i < echoes.size(); ++i) is_echo[i] = echoes[i].allFinite() ? 1 : 0;
+    ground.estimate(Eigen::Vector3f::Zero(), echoes, is_echo);
+    oracle::GroundMap map(kReach, Eigen::Vector3f::Zero(), echoes, is_echo);
+    std::size_t judged = 0;
+    for (std::size_t i = 0; i < echoes.size(); ++i) {
+      const double expected = map.heightOf(echoes[i]);
+      if (is_echo[i] == 0 || std::isinf(expected)) continue;
+      ASSERT_NEAR(ground.heightOf(echoes[i]), expected, 1e-3) << "echo " << i;
+      ++judged;
+    }
+    EXPECT_GT(judged, 10000U);
+  }
 }
 
 TEST_P(Drives, TheDefaultConfigurationFindsWhatMoves) {

@@ -75,7 +75,8 @@ class Newness3d : public Newness {
     State& state = voxels_[voxel];
     state.last_hit = now();
     if (!isYoung(state.birth, state.was_free)) return Place::kSettled;
-    return state.was_free && !state.at_surface ? Place::kNew : Place::kUnobserved;
+    if (!state.was_free) return Place::kUnobserved;
+    return state.at_surface ? Place::kAtSurface : Place::kNew;
   }
 
  private:
@@ -128,19 +129,22 @@ class Newness2d : public Newness {
       cell.settled = HeightRange{};
     }
     if (cell.arrived.holds(height)) return Place::kNew;
-    if (cell.found.holds(height) && !missed) return Place::kUnobserved;
+    if (cell.found.holds(height) && !missed) return foundPlace(cell, height);
     const bool free = now() > 1 && (!config_.free_evidence || wasSeenFree(history, point, kBeforeEverything, false));
-    const bool comes = free && !(config_.neighbourhood && touchesSettled(position, height));
+    const bool at_surface = free && config_.neighbourhood && touchesSettled(position, height);
+    const bool comes = free && !at_surface;
     HeightRange& range = comes ? cell.arrived : cell.found;
     if (range.empty()) (comes ? cell.arrived_birth : cell.found_birth) = now();
     range.extend(height);
-    return comes ? Place::kNew : Place::kUnobserved;
+    if (at_surface) cell.surfaces.push_back(height);
+    return comes ? Place::kNew : foundPlace(cell, height);
   }
 
  private:
   using Position = std::array<int, 2>;
   struct Cell {
     HeightRange settled, arrived, found;
+    std::vector<float> surfaces;  ///< heights in `found` that had been seen free and touched a surface
     int arrived_birth = kNever, found_birth = kNever;
     std::vector<int> hits;  ///< scans
   };
@@ -154,7 +158,15 @@ class Newness2d : public Newness {
     if (!cell.found.empty() && !isYoung(cell.found_birth, false)) {
       cell.settled.extend(cell.found);
       cell.found = HeightRange{};
+      cell.surfaces.clear();
     }
+  }
+
+  /// Between the lowest and the highest that was found at a surface everything is that surface.
+  static Place foundPlace(const Cell& cell, float height) {
+    const auto [lowest, highest] = std::minmax_element(cell.surfaces.begin(), cell.surfaces.end());
+    const bool at_surface = lowest != cell.surfaces.end() && height >= *lowest && height <= *highest;
+    return at_surface ? Place::kAtSurface : Place::kUnobserved;
   }
 
   /// A settled range within a voxel of this height, in this cell or one around it.

@@ -32,6 +32,7 @@ class Sights {
       const auto known = image.find(*pixel);
       image[*pixel] = known == image.end() ? range : std::min(range, known->second);
     }
+    single_ = image;
     if (reading.careful) {
       image = filledBetweenBeams(image, static_cast<int>(reading.largest_gap / kRowHeight));
       image = filledBetweenColumns(image);
@@ -58,15 +59,17 @@ class Sights {
   }
 
   /// How far the scan saw in this pixel [m], not rounded; nothing where it is unknown.
-  std::optional<double> rangeAt(const Pixel& pixel) const {
-    const auto known = image_.find(pixel);
-    return known == image_.end() ? std::nullopt : std::optional<double>(known->second);
-  }
-
-  const Image& image() const { return image_; }
+  std::optional<double> rangeAt(const Pixel& pixel) const { return rangeIn(image_, pixel); }
+  /// The same of its single lines of sight: the nearest echo in the pixel itself, however carefully the rest is read.
+  std::optional<double> rangeThroughGaps(const Pixel& pixel) const { return rangeIn(single_, pixel); }
 
  private:
   static constexpr double kPi = 3.14159265358979323846;
+
+  static std::optional<double> rangeIn(const Image& image, const Pixel& pixel) {
+    const auto known = image.find(pixel);
+    return known == image.end() ? std::nullopt : std::optional<double>(known->second);
+  }
 
   static Image filledBetweenBeams(const Image& image, int largest_gap) {
     Image filled = image;
@@ -106,7 +109,7 @@ class Sights {
     return nearest;
   }
 
-  Image image_;
+  Image image_, single_;
 };
 
 }  // namespace donex::oracle

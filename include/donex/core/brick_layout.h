@@ -21,10 +21,7 @@ class BrickLayout {
 
   /// The window's lowest voxel has moved to `min_index` (multiples of GridWindow::kBrick).
   void scrollTo(const Index3& min_index) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const int brick = min_index[axis] / GridWindow::kBrick;
-      shift_[axis] = (brick % bricks_[axis] + bricks_[axis]) % bricks_[axis];
-    }
+    for (int axis = 0; axis < 3; ++axis) shift_[axis] = modulo(min_index[axis] / GridWindow::kBrick, bricks_[axis]);
   }
 
   std::size_t slots() const { return static_cast<std::size_t>(bricks_.cast<std::int64_t>().prod()); }
@@ -59,7 +56,6 @@ class BrickLayout {
     z = wrapped(z + shift_.z(), bricks_.z());
     return static_cast<std::uint32_t>((z * bricks_.y() + y) * bricks_.x() + x);
   }
-  static int wrapped(int i, int n) { return i >= n ? i - n : i; }
 
   Index3 bricks_;
   Index3 shift_;

@@ -12,6 +12,8 @@
 
 namespace donex {
 
+constexpr double kFollowed = 1.5;  ///< [m] off its expected place a thing that is followed is found at most
+
 /// A thing of the present scan and what its echoes say.
 struct Candidate {
   explicit Candidate(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) : echoes(memory) {}

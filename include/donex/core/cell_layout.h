@@ -80,8 +80,6 @@ class CellLayout {
     }
   }
 
-  static int wrapped(int i, int n) { return i >= n ? i - n : i; }
-  static int modulo(int i, int n) { return (i % n + n) % n; }
 
   int width_, depth_;              ///< cells
   int shift_x_ = 0, shift_y_ = 0;  ///< slot of the window's lowest cell

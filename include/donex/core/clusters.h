@@ -16,7 +16,7 @@ class Clusters {
   struct Settings {
     double cell = 0.3;           ///< edge of a cell [m]
     double height = 4.5;         ///< echoes higher above ground belong to no cluster [m]
-    double across_angle = 0.01;  ///< echoes within this angle touch, horizontally [rad]
+    double across_angle = 0.01;  ///< echoes within this angle touch, horizontally: more than a sensor's step [rad]
     double up_angle = 0.015;     ///< the same vertically [rad]
   };
 

@@ -22,8 +22,13 @@ enum class EchoReason : std::uint8_t {
 constexpr std::size_t kEchoReasons = 7;
 
 inline const char* describe(EchoReason reason) {
-  constexpr std::array<const char*, kEchoReasons> kWords{
-      "no echo", "outside the grid", "ground", "never seen free", "occupied for longer", "new, but no object", "moving"};
+  constexpr std::array<const char*, kEchoReasons> kWords{"no echo",
+                                                         "outside the grid",
+                                                         "ground",
+                                                         "never seen free",
+                                                         "occupied for longer",
+                                                         "new, but no object",
+                                                         "moving"};
   return kWords[static_cast<std::size_t>(reason)];
 }
 

@@ -14,6 +14,15 @@ namespace donex {
 /// Echoes beyond this distance from the sensor [m] are no echoes: they are treated as non-finite ones.
 constexpr float kFarthestEcho = 1000.0F;
 
+/// `i` of a window that wraps around after `n`; `i` is below 2 n.
+inline int wrapped(int i, int n) { return i >= n ? i - n : i; }
+
+/// The same of any `i`.
+inline int modulo(int i, int n) { return (i % n + n) % n; }
+
+/// Distance from the vehicle to the region's farthest corner, seen from above [m].
+double reachOf(const Region& region);
+
 /// A scan in the grid: what every method works on. All of it is in the grid's window, in voxel edge lengths.
 struct GridScan {
   Eigen::Vector3f origin = Eigen::Vector3f::Zero();  ///< sensor
@@ -54,6 +63,10 @@ class GridWindow {
 
   /// Frame of the grid at the last moveTo.
   const Eigen::Isometry3d& odomFromGrid() const { return odom_from_grid_; }
+  /// The window's lowest corner, with the grid's axes: where GridScan is in, but for its scale.
+  Eigen::Isometry3d odomFromWindow() const {
+    return odom_from_grid_ * Eigen::Translation3d(min_index_.cast<double>() * voxel_size_);
+  }
   /// Centre of a voxel of the window, grid frame [m].
   Eigen::Vector3d indexToCenter(const Index3& in_window) const {
     return ((in_window + min_index_).cast<double>().array() + 0.5) * voxel_size_;
@@ -72,6 +85,13 @@ class GridWindow {
   Eigen::Isometry3d odom_from_grid_ = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d grid_from_base_ = Eigen::Isometry3d::Identity();
 };
+
+/// A scan's echoes from the window's lowest corner [m], and which of them are echoes at all.
+void placePoints(const GridWindow& window, const GridScan& scan, std::vector<Eigen::Vector3f>& points,
+                 std::vector<std::uint8_t>& is_echo);
+
+/// An order of voxels.
+bool isBefore(const Index3& a, const Index3& b);
 
 /// Centres of voxels of the window, each once, odometry frame [m].
 std::vector<Eigen::Vector3f> cellCenters(const GridWindow& window, std::vector<Index3> voxels);

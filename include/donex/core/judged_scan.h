@@ -12,6 +12,7 @@ namespace donex {
 enum class Place : std::uint8_t {
   kUnobserved,  ///< hit for the first time not long ago, and never seen free before; or not asked
   kNew,         ///< occupied not long ago after it had been seen free: something came
+  kAtSurface,   ///< the same, but it touched a settled surface when it became occupied: that surface's flicker
   kSettled,     ///< occupied for longer than the birth window
 };
 

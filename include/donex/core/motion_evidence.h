@@ -9,6 +9,8 @@
 
 namespace donex {
 
+constexpr int kLeastLeft = 3;  ///< points of a trace that must be free now before its place counts as left
+
 /// The line of sight's own history: what stood there has left, or stands there still, or is not known.
 struct Former {
   int left = 0;   ///< points of the trace that are free now

@@ -78,7 +78,8 @@ class Newness2d {
     const Index3 voxel = voxelOf(in_window);
     __builtin_prefetch(&cells_[cells_layout_.slotOf(voxel.x(), voxel.y())], 1);
   }
-  /// As Newness3d::judge; an echo inside a known range shares that range's judgement.
+  /// As Newness3d::judge; an echo inside a known range shares that range's judgement. Heights that were found
+  /// at a surface stay there until they settle: they share that judgement, not the one of what was found around them.
   Place judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& point, const ScanClock& clock,
               const SightHistory& history);
   void reset();
@@ -89,11 +90,16 @@ class Newness2d {
 
  private:
   struct Cell {
-    HeightRange settled;  ///< occupied for longer than the birth window
-    HeightRange arrived;  ///< new
-    HeightRange found;    ///< unobserved
+    HeightRange settled;     ///< occupied for longer than the birth window
+    HeightRange arrived;     ///< new
+    HeightRange found;       ///< unobserved, or at a surface
+    HeightRange at_surface;  ///< the part of `found` that had been seen free: what it holds was at a surface all along
     std::uint32_t arrived_birth = 0, found_birth = 0;
     std::uint32_t last_hit = 0, hit_before = 0;  ///< scans
+
+    Place placeInFound(float height) const {
+      return at_surface.holds(height) ? Place::kAtSurface : Place::kUnobserved;
+    }
   };
 
   Cell& cellAt(int x, int y) { return cells_[cells_layout_.slotOf(x, y)]; }
