@@ -67,8 +67,10 @@ class RestlessRoom {
     for (double& range : ranges_) {
       if (uniform(0, 1) < 0.15) range = kRanges[std::uniform_int_distribution<std::size_t>(0, 4)(random_)];
     }
-    if (moves_) pose_ = pose_ * Eigen::Translation3d(uniform(0, 0.4), 0.0, uniform(-0.2, 0.2)) *
-                        Eigen::AngleAxisd(uniform(-0.03, 0.04), Eigen::Vector3d::UnitZ());
+    if (moves_) {
+      pose_ = pose_ * Eigen::Translation3d(uniform(0, 0.4), 0.0, uniform(-0.2, 0.2)) *
+              Eigen::AngleAxisd(uniform(-0.03, 0.04), Eigen::Vector3d::UnitZ());
+    }
     Scan scan;
     scan.stamp = stamp_ += uniform(0.05, 0.2);
     scan.odom_from_base = pose_;

@@ -176,7 +176,9 @@ TEST(RegionPlanes, FollowASlopeRegionByRegion) {
   }
   const std::size_t ground = points.size();
   for (double z = 0.0; z < 2.0; z += 0.1) {
-    for (double y = -3.0; y < 3.0; y += 0.1) points.push_back(Eigen::Vector3d(20.0, y, height(20.0) - 1.7 + z).cast<float>());
+    for (double y = -3.0; y < 3.0; y += 0.1) {
+      points.push_back(Eigen::Vector3d(20.0, y, height(20.0) - 1.7 + z).cast<float>());
+    }
   }
   RegionPlanes planes;
   planes.fit(Eigen::Vector3f::Zero(), points, std::vector<std::uint8_t>(points.size(), 1));

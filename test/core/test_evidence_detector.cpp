@@ -148,6 +148,11 @@ TEST_P(BothGrids, EmptyScansAreScans) {
 }
 
 TEST_P(BothGrids, EveryStepCanBeSwitchedOffAlone) {
+  const auto differ = [](const std::vector<EchoLabels>& a, const std::vector<EchoLabels>& b) {
+    bool one_differs = false;
+    for (std::size_t k = 0; k < a.size(); ++k) one_differs |= a[k].dynamic != b[k].dynamic;
+    return one_differs;
+  };
   // Without objects, which mend what the other steps leave.
   Config echo_by_echo = config();
   echo_by_echo.objects.enabled = false;
@@ -155,17 +160,18 @@ TEST_P(BothGrids, EveryStepCanBeSwitchedOffAlone) {
   const auto matters = [&](bool EvidenceConfig::*step) {
     Config config = echo_by_echo;
     config.evidence.*step = false;
-    const auto labels = labelsOf(config, street());
-    bool differs = false;
-    for (std::size_t k = 0; k < labels.size(); ++k) differs |= labels[k].dynamic != with_all[k].dynamic;
-    return differs;
+    return differ(labelsOf(config, street()), with_all);
   };
   EXPECT_TRUE(matters(&EvidenceConfig::free_evidence));
   EXPECT_TRUE(matters(&EvidenceConfig::careful_sight));
   EXPECT_TRUE(matters(&EvidenceConfig::birth_age));
   EXPECT_TRUE(matters(&EvidenceConfig::neighbourhood));
   EXPECT_TRUE(matters(&EvidenceConfig::ground));
-  EXPECT_NE(labelsOf(config(), street()).back().dynamic, with_all.back().dynamic) << "objects";
+  const auto with_objects = labelsOf(config(), street());
+  EXPECT_TRUE(differ(with_objects, with_all)) << "objects";
+  Config without_motion = config();
+  without_motion.objects.motion = false;
+  EXPECT_TRUE(differ(labelsOf(without_motion, street()), with_objects)) << "object_motion";
 }
 
 TEST_P(BothGrids, ObjectsHoldTheDynamicEchoes) {

@@ -26,7 +26,7 @@ bool holds(const std::vector<Eigen::Vector3f>& centers, const Eigen::Vector3f& p
   return false;
 }
 
-TEST(Explanation, paperCells) {
+TEST(Explanation, ThePapersCells) {
   Config config = paperConfig(Method::kDonex3d);
   const auto detector = makeDetector(config);
   const Eigen::Vector3f ahead(5.1F, 0.1F, 0.1F), aside(0.1F, 5.1F, 0.1F), behind(10.1F, 0.2F, 0.2F);
@@ -55,7 +55,7 @@ void expectAgreement(EchoReason reason, bool dynamic, bool observed, const std::
   EXPECT_EQ(observed, is_known) << where << describe(reason);
 }
 
-TEST(Explanation, reasonsAgreeWithTheLabels) {
+TEST(Explanation, ReasonsAgreeWithTheLabels) {
   const auto drive = testing::simulatedDrive("street", 32, 12, 3);
   for (const Method method : {Method::kDonex3d, Method::kDonex2d}) {
     Config config;
@@ -91,7 +91,7 @@ Scan wallAt(double range, double stamp) {
   return scanOf(stamp, std::move(echoes));
 }
 
-TEST(Explanation, theFlickerOfASurfaceWasSeenFreeAndIsSettled) {
+TEST(Explanation, TheFlickerOfASurfaceWasSeenFreeAndIsSettled) {
   for (const Method method : {Method::kDonex3d, Method::kDonex2d}) {
     Config config;
     config.method = method;
@@ -109,7 +109,7 @@ TEST(Explanation, theFlickerOfASurfaceWasSeenFreeAndIsSettled) {
   }
 }
 
-TEST(Explanation, cellsWithEvidenceAreThoseThatAreNotHit) {
+TEST(Explanation, CellsWithEvidenceAreThoseThatAreNotHit) {
   const auto drive = testing::simulatedDrive("intersection", 32, 10, 3);
   const Config config;
   const auto detector = makeDetector(config);
@@ -118,17 +118,21 @@ TEST(Explanation, cellsWithEvidenceAreThoseThatAreNotHit) {
   const MemoryCells cells = detector->memoryCells();
   EXPECT_GT(cells.shadowed.size(), 100U);
   EXPECT_GT(cells.seen_through.size(), 10U) << "behind what moved";
-  // The first few shown cells hold no echo of the last scan.
+  // Some of the shown cells: they hold no echo of the last scan, but those of the ground, which are never remembered.
   const auto size = static_cast<float>(config.voxel_size);
   const Scan& last = drive.back().scan;
   for (const auto* kind : {&cells.shadowed, &cells.seen_through}) {
-    for (std::size_t i = 0; i < kind->size(); i += 50) {
+    std::size_t above_ground = 0;
+    for (std::size_t i = 0; i < kind->size(); i += 5) {
+      if ((*kind)[i].z() < 1.0F) continue;
+      ++above_ground;
       for (const Eigen::Vector3f& echo : last.echoes) {
         const Eigen::Vector3f in_odom = (last.odomFromSensor() * echo.cast<double>()).cast<float>();
         const bool is_hit = ((in_odom - (*kind)[i]).array().abs() < 0.5F * size - 1e-3F).all();
-        ASSERT_FALSE(is_hit && std::abs(in_odom.z()) > 1.0F) << (*kind)[i].transpose();
+        ASSERT_FALSE(is_hit) << (*kind)[i].transpose();
       }
     }
+    EXPECT_GT(above_ground, 2U);
   }
 }
 

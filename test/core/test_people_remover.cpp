@@ -100,8 +100,8 @@ TEST(PointShadows, EqualTheDefinitionOnRandomEchoes) {
 
 TEST(PointShadows, EndALineOfSightOneDiagonalBeforeAWall) {
   std::vector<Eigen::Vector3f> wall;
-  for (int y = -20; y <= 20; ++y) {
-    for (int z = -20; z <= 20; ++z) wall.emplace_back(10.0F, 0.1F * static_cast<float>(y), 0.1F * static_cast<float>(z));
+  for (float y = -20.0F; y <= 20.0F; ++y) {
+    for (float z = -20.0F; z <= 20.0F; ++z) wall.emplace_back(10.0F, 0.1F * y, 0.1F * z);
   }
   PointShadows shadows(0.5F, 0.0F);
   const auto& most = shadows.cast(wall, std::vector<std::uint8_t>(wall.size(), 1));

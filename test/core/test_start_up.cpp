@@ -7,7 +7,7 @@
 namespace donex {
 namespace {
 
-TEST(StartUp, usefulFromTheFirstSecondAtRest) {
+TEST(StartUp, UsefulFromTheFirstSecondAtRest) {
   constexpr std::size_t kFirst = 5, kEnd = 10;  // scans: the second half of the first second
   const auto drive = testing::simulatedDrive("intersection", 32, static_cast<int>(kEnd));
   const auto detector = makeDetector(Config());

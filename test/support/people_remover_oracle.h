@@ -30,8 +30,6 @@ class PeopleRemover {
     return labels;
   }
 
-  std::size_t freeVoxels() const { return free_.size(); }
-
   /// How far each line of sight may be followed.
   static std::vector<float> shadows(const std::vector<Eigen::Vector3f>& echoes,
                                     const std::vector<std::uint8_t>& is_echo, float diagonal, float fuzz);

@@ -69,7 +69,9 @@ class RandomScans {
   bool chance(double p) { return std::uniform_real_distribution<double>(0, 1)(random_) < p; }
   float uniform(float low, float high) { return std::uniform_real_distribution<float>(low, high)(random_); }
   int pick(int n) { return std::uniform_int_distribution<int>(0, n - 1)(random_); }
-  std::size_t pickEcho(const Scan& scan) { return static_cast<std::size_t>(pick(static_cast<int>(scan.echoes.size()))); }
+  std::size_t pickEcho(const Scan& scan) {
+    return static_cast<std::size_t>(pick(static_cast<int>(scan.echoes.size())));
+  }
 
   std::mt19937 random_;
   double voxel_size_;
