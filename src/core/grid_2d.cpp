@@ -171,18 +171,6 @@ void Grid2d::reset() {
 
 HeightRange Grid2d::rangeAt(int x, int y) const { return cells_[layout_.slotOf(x, y)].remembered; }
 
-std::vector<Index3> Grid2d::newVoxels() const {
-  std::vector<Index3> voxels;
-  for (const Part& part : parts_) part.echoes.appendNewVoxels(voxels);
-  return voxels;
-}
-
-std::vector<std::uint32_t> Grid2d::noEchoes() const {
-  std::vector<std::uint32_t> numbers;
-  for (const Part& part : parts_) part.echoes.appendNoEchoes(numbers);
-  return numbers;
-}
-
 double Grid2d::bytesFor(double slots, double echoes, int threads) {
   const double more_parts = threads - 1;
   const double an_echo = TakenEchoes::bytesFor(1.0) + sizeof(std::uint32_t);

@@ -177,18 +177,6 @@ void Grid3d::reset() {
   for (Part& part : parts_) part.echoes.clear();
 }
 
-std::vector<Index3> Grid3d::newVoxels() const {
-  std::vector<Index3> voxels;
-  for (const Part& part : parts_) part.echoes.appendNewVoxels(voxels);
-  return voxels;
-}
-
-std::vector<std::uint32_t> Grid3d::noEchoes() const {
-  std::vector<std::uint32_t> numbers;
-  for (const Part& part : parts_) part.echoes.appendNoEchoes(numbers);
-  return numbers;
-}
-
 std::vector<Index3> Grid3d::remembered() const {
   std::vector<Index3> voxels;
   for (const Used& used : used_) {

@@ -28,9 +28,9 @@ class Grid2d {
 
   const GridWindow& window() const { return window_; }
   /// Numbers of the last scan's echoes that are none (non-finite, too far).
-  std::vector<std::uint32_t> noEchoes() const;
+  std::vector<std::uint32_t> noEchoes() const { return noEchoesOf(parts_); }
   /// Voxels of the last scan's new echoes, in the window; a voxel may come more than once.
-  std::vector<Index3> newVoxels() const;
+  std::vector<Index3> newVoxels() const { return newVoxelsOf(parts_); }
   /// Remembered range of a cell of the window, heights as the window's.
   HeightRange rangeAt(int x, int y) const;
   std::size_t memoryBytes() const;

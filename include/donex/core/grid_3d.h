@@ -29,9 +29,9 @@ class Grid3d {
 
   const GridWindow& window() const { return window_; }
   /// Numbers of the last scan's echoes that are none (non-finite, too far).
-  std::vector<std::uint32_t> noEchoes() const;
+  std::vector<std::uint32_t> noEchoes() const { return noEchoesOf(parts_); }
   /// Voxels of the last scan's new echoes, in the window; a voxel may come more than once.
-  std::vector<Index3> newVoxels() const;
+  std::vector<Index3> newVoxels() const { return newVoxelsOf(parts_); }
   /// Remembered voxels, in the window; order is not specified.
   std::vector<Index3> remembered() const;
   std::size_t memoryBytes() const;

@@ -52,4 +52,20 @@ class TakenEchoes {
   std::vector<std::uint32_t> no_echoes_;
 };
 
+/// The new voxels of all parts of a scan (each with its `echoes`), as TakenEchoes says.
+template <class Part>
+std::vector<Index3> newVoxelsOf(const std::vector<Part>& parts) {
+  std::vector<Index3> voxels;
+  for (const Part& part : parts) part.echoes.appendNewVoxels(voxels);
+  return voxels;
+}
+
+/// The same of the echoes that are none.
+template <class Part>
+std::vector<std::uint32_t> noEchoesOf(const std::vector<Part>& parts) {
+  std::vector<std::uint32_t> numbers;
+  for (const Part& part : parts) part.echoes.appendNoEchoes(numbers);
+  return numbers;
+}
+
 }  // namespace donex
