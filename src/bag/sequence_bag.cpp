@@ -4,13 +4,13 @@
 #include <cmath>
 #include <cstring>
 
-#include <boost/make_shared.hpp>
 #include <fmt/format.h>
 #include <nav_msgs/Odometry.h>
 #include <tf2_eigen/tf2_eigen.h>
 #include <tf2_msgs/TFMessage.h>
 
 #include "donex/bag/bag_file.h"
+#include "donex/ros/cloud_fields.h"
 
 namespace donex {
 namespace {
@@ -79,24 +79,14 @@ void checkTimes(const SequenceReader& sequence, double odometry_rate) {
 }  // namespace
 
 sensor_msgs::PointCloud2Ptr toCloud(const SequenceScan& scan) {
-  constexpr std::uint32_t kFloats = 4;
-  const auto cloud = boost::make_shared<sensor_msgs::PointCloud2>();
-  cloud->header.stamp = ros::Time(scan.stamp);
-  cloud->header.frame_id = kSensorFrame;
-  cloud->height = 1;
-  cloud->width = static_cast<std::uint32_t>(scan.echoes.size());
-  cloud->point_step = kFloats * sizeof(float);
-  cloud->row_step = cloud->point_step * cloud->width;
+  std_msgs::Header header;
+  header.stamp = ros::Time(scan.stamp);
+  header.frame_id = kSensorFrame;
+  const auto cloud = makeCloud(header, scan.echoes.size(), sizeof(Eigen::Vector4f));
   cloud->is_dense = std::all_of(scan.echoes.begin(), scan.echoes.end(), [](const auto& e) { return e.allFinite(); });
   for (const char* name : {"x", "y", "z", "intensity"}) {
-    sensor_msgs::PointField field;
-    field.name = name;
-    field.offset = static_cast<std::uint32_t>(cloud->fields.size() * sizeof(float));
-    field.datatype = sensor_msgs::PointField::FLOAT32;
-    field.count = 1;
-    cloud->fields.push_back(field);
+    addField(*cloud, name, cloud->fields.size() * sizeof(float), sensor_msgs::PointField::FLOAT32);
   }
-  cloud->data.resize(cloud->row_step);
   for (std::size_t i = 0; i < scan.echoes.size(); ++i) {
     const Eigen::Vector4f row(scan.echoes[i].x(), scan.echoes[i].y(), scan.echoes[i].z(), scan.intensities[i]);
     std::memcpy(cloud->data.data() + i * sizeof(row), row.data(), sizeof(row));

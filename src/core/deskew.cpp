@@ -9,7 +9,21 @@ namespace {
 /// Poses are looked up this often [s] and blended linearly between: at 1 rad/s and 100 m that is off by 3 um.
 constexpr double kKnotStep = 0.0005;
 
-using Rows = Eigen::Matrix<float, 3, 4>;
+/// An affine map by its columns, each in one register: the last entry of all is not used.
+struct Columns {
+  explicit Columns(const Eigen::Isometry3d& transform) {
+    const Eigen::Matrix4f matrix = transform.matrix().cast<float>();
+    x = matrix.col(0);
+    y = matrix.col(1);
+    z = matrix.col(2);
+    offset = matrix.col(3);
+  }
+  Eigen::Array4f apply(const Eigen::Vector3f& v, float weight) const {
+    return (weight * x * v.x() + weight * y * v.y()) + (weight * z * v.z() + weight * offset);
+  }
+
+  Eigen::Array4f x, y, z, offset;
+};
 
 struct TimeSpan {
   double first = 0.0, last = 0.0;  // relative to the stamp [s]
@@ -48,22 +62,25 @@ class MotionTable {
     for (double knot = 0.0; knot <= intervals; ++knot) {
       const auto pose = knot < intervals ? motion.poseAt(stamp + first_ + knot * step_) : at_last;
       if (!pose) return pose.fault();
-      knots_.push_back((sensor_from_odom * *pose * mounting).matrix().topRows<3>().cast<float>());
+      knots_.emplace_back(sensor_from_odom * *pose * mounting);
     }
+    last_interval_ = static_cast<int>(knots_.size()) - 2;
     return MotionFault::kNone;
   }
 
   Eigen::Vector3f move(const Eigen::Vector3f& echo, float time) const {
     const double position = step_ > 0.0 ? (static_cast<double>(time) - first_) / step_ : 0.0;
-    const auto knot = std::min(static_cast<std::size_t>(position), knots_.size() - 2);
+    const int knot = std::min(static_cast<int>(position), last_interval_);
     const auto weight = static_cast<float>(position - static_cast<double>(knot));
-    const Eigen::Vector4f homogeneous = echo.homogeneous();
-    return (1.0F - weight) * (knots_[knot] * homogeneous) + weight * (knots_[knot + 1] * homogeneous);
+    const Columns* before = knots_.data() + knot;
+    const Eigen::Array4f moved = before[0].apply(echo, 1.0F - weight) + before[1].apply(echo, weight);
+    return moved.head<3>();
   }
 
  private:
   double first_ = 0.0, step_ = 0.0;  // [s]
-  std::vector<Rows> knots_;          // at least two
+  std::vector<Columns> knots_;       // at least two
+  int last_interval_ = 0;
 };
 
 }  // namespace

@@ -9,6 +9,8 @@
 #include <boost/endian/conversion.hpp>
 #include <boost/make_shared.hpp>
 
+#include "donex/ros/cloud_fields.h"
+
 namespace donex {
 namespace {
 
@@ -43,14 +45,22 @@ float readCoordinate(const std::uint8_t* point, FieldPosition field, bool swap) 
   return field.datatype == PointField::FLOAT32 ? readFloat(at, swap) : toFloat(readDouble(at, swap));
 }
 
-/// Calls visit(index of the echo, its first byte) for every echo in order.
+/// Calls visit(index of the echo, its first byte) for every echo in order. Its own copy of the layout: bytes that
+/// `visit` writes might be any object's, and what may have changed is read again for every echo.
 template <class Visit>
-void forEachPoint(const PointCloud2& cloud, const CloudLayout& layout, Visit&& visit) {
+void forEachPoint(const PointCloud2& cloud, const CloudLayout layout, Visit&& visit) {
+  const std::uint8_t* row = cloud.data.data();
   std::size_t index = 0;
-  for (std::size_t row = 0; row < layout.height; ++row) {
-    const std::uint8_t* point = cloud.data.data() + row * layout.row_step;
+  for (std::size_t i = 0; i < layout.height; ++i, row += layout.row_step) {
+    const std::uint8_t* point = row;
     for (std::size_t column = 0; column < layout.width; ++column, point += layout.point_step) visit(index++, point);
   }
+}
+
+/// Ouster's and Livox' drivers write 0, 0, 0 where nothing came back: the sensor sees no echo in itself.
+Eigen::Vector3f echoOf(const Eigen::Vector3f& position) {
+  const bool is_no_return = (position.array() == 0.0F).all();
+  return is_no_return ? Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()) : position;
 }
 
 /// What nearly every driver writes: x, y, z as floats of this machine, one behind the other.
@@ -61,41 +71,81 @@ bool isPlain(const CloudLayout& layout) {
   return floats && adjacent && !layout.swap_bytes;
 }
 
-/// Livox writes `timestamp` in nanoseconds, the others in seconds: no clock has seen 10^14 s.
-double absoluteSeconds(double timestamp) { return std::abs(timestamp) > 1e14 ? timestamp * 1e-9 : timestamp; }
-
-double readNumber(const std::uint8_t* at, std::uint8_t datatype, bool swap) {
-  switch (datatype) {
-    case PointField::FLOAT32: return static_cast<double>(readFloat(at, swap));
-    case PointField::UINT32: return read<std::uint32_t, std::uint32_t>(at, swap);
-    default: return readDouble(at, swap);
+/// Calls visit(index of the echo, the echo, its first byte) for every echo in order.
+template <class Visit>
+void forEachEcho(const PointCloud2& cloud, const CloudLayout& layout, Visit&& visit) {
+  if (isPlain(layout)) {
+    forEachPoint(cloud, layout, [&](std::size_t i, const std::uint8_t* point) {
+      Eigen::Vector3f position;
+      std::memcpy(position.data(), point + layout.x.offset, 3 * sizeof(float));
+      visit(i, echoOf(position), point);
+    });
+    return;
   }
-}
-
-double timeAfterStamp(const std::uint8_t* point, const TimeField& time, double stamp, bool swap) {
-  const double value = readNumber(point + time.position.offset, time.position.datatype, swap);
-  switch (time.encoding) {
-    case TimeEncoding::kRelativeSeconds: return value;
-    case TimeEncoding::kRelativeMicroseconds: return 1e-6 * value;
-    case TimeEncoding::kRelativeNanoseconds: return 1e-9 * value;
-    case TimeEncoding::kAbsoluteSeconds: return value - stamp;
-    case TimeEncoding::kAbsoluteNanoseconds: return 1e-9 * value - stamp;
-    case TimeEncoding::kAuto: break;
-  }
-  return absoluteSeconds(value) - stamp;
-}
-
-/// Ouster's and Livox' drivers write 0, 0, 0 where nothing came back: the sensor sees no echo in itself.
-Eigen::Vector3f echoOf(const Eigen::Vector3f& position) {
-  const bool is_no_return = (position.array() == 0.0F).all();
-  return is_no_return ? Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()) : position;
-}
-
-bool isEcho(const std::uint8_t* point, const CloudLayout& layout) {
   const bool swap = layout.swap_bytes;
-  return echoOf({readCoordinate(point, layout.x, swap), readCoordinate(point, layout.y, swap),
-                 readCoordinate(point, layout.z, swap)})
-      .allFinite();
+  forEachPoint(cloud, layout, [&](std::size_t i, const std::uint8_t* point) {
+    const Eigen::Vector3f position(readCoordinate(point, layout.x, swap), readCoordinate(point, layout.y, swap),
+                                   readCoordinate(point, layout.z, swap));
+    visit(i, echoOf(position), point);
+  });
+}
+
+/// Reads times of one encoding: after the stamp they are scale x what is written - origin.
+class TimeReader {
+ public:
+  TimeReader(const TimeField& field, double stamp, bool swap)
+      : offset_(field.position.offset),
+        datatype_(field.position.datatype),
+        swap_(swap),
+        unit_by_magnitude_(field.encoding == TimeEncoding::kAuto) {
+    switch (field.encoding) {
+      case TimeEncoding::kRelativeSeconds: break;
+      case TimeEncoding::kRelativeMicroseconds: scale_ = 1e-6; break;
+      case TimeEncoding::kRelativeNanoseconds: scale_ = 1e-9; break;
+      case TimeEncoding::kAbsoluteNanoseconds: scale_ = 1e-9; [[fallthrough]];
+      case TimeEncoding::kAbsoluteSeconds:
+      case TimeEncoding::kAuto: origin_ = stamp; break;
+    }
+  }
+
+  /// After the stamp [s].
+  double operator()(const std::uint8_t* point) const {
+    const double written = number(point + offset_);
+    // Livox writes `timestamp` in nanoseconds, the others in seconds: no clock has seen 10^14 s.
+    const bool is_nanoseconds = unit_by_magnitude_ && std::abs(written) > 1e14;
+    return (is_nanoseconds ? 1e-9 : scale_) * written - origin_;
+  }
+
+ private:
+  double number(const std::uint8_t* at) const {
+    switch (datatype_) {
+      case PointField::FLOAT32: return static_cast<double>(readFloat(at, swap_));
+      case PointField::UINT32: return read<std::uint32_t, std::uint32_t>(at, swap_);
+      default: return readDouble(at, swap_);
+    }
+  }
+
+  std::uint32_t offset_;
+  std::uint8_t datatype_;
+  bool swap_, unit_by_magnitude_;
+  double scale_ = 1.0, origin_ = 0.0;  // [s a unit], [s]
+};
+
+std::string strangeTimes(double time) {
+  std::ostringstream text;
+  text << "echoes' times are no times of this scan (" << time << " s after its stamp): not de-skewed";
+  return text.str();
+}
+
+/// How long a point is, is known only when the program runs: std::memcpy would be a call for every one.
+void copyPoint(std::uint8_t* to, const std::uint8_t* from, std::size_t size) {
+  constexpr std::size_t kChunk = 16;
+  if (size < kChunk) {
+    std::memcpy(to, from, size);
+    return;
+  }
+  for (std::size_t i = 0; i + kChunk <= size; i += kChunk) std::memcpy(to + i, from + i, kChunk);
+  std::memcpy(to + size - kChunk, from + size - kChunk, kChunk);
 }
 
 /// The header of an output with `width` x `height` points; its data still zero.
@@ -116,71 +166,68 @@ sensor_msgs::PointCloud2Ptr emptyLike(const PointCloud2& cloud, std::size_t widt
 
 void addLabelField(PointCloud2& cloud, const char* name, std::uint32_t offset, std::size_t input_point_step) {
   const bool is_new = offset >= input_point_step;
-  if (!is_new) return;
-  PointField field;
-  field.name = name;
-  field.offset = offset;
-  field.datatype = PointField::UINT8;
-  field.count = 1;
-  cloud.fields.push_back(field);
+  if (is_new) addField(cloud, name, offset, PointField::UINT8);
 }
 
 }  // namespace
 
-void parseEchoes(const PointCloud2& cloud, const CloudLayout& layout, std::vector<Eigen::Vector3f>& echoes) {
-  echoes.resize(layout.echoes());
-  if (isPlain(layout)) {
-    forEachPoint(cloud, layout, [&](std::size_t i, const std::uint8_t* point) {
-      std::memcpy(echoes[i].data(), point + layout.x.offset, 3 * sizeof(float));
-      echoes[i] = echoOf(echoes[i]);
-    });
-    return;
-  }
-  const bool swap = layout.swap_bytes;
-  forEachPoint(cloud, layout, [&](std::size_t i, const std::uint8_t* point) {
-    echoes[i] = echoOf({readCoordinate(point, layout.x, swap), readCoordinate(point, layout.y, swap),
-                        readCoordinate(point, layout.z, swap)});
-  });
+void EchoTimes::clear() {
+  after_stamp.clear();
+  first = last = 0.0;
+  problem.clear();
 }
 
-EchoTimes parseEchoTimes(const PointCloud2& cloud, const CloudLayout& layout, std::string& problem) {
-  problem.clear();
-  EchoTimes times;
-  if (!layout.time) return times;
+void parseEchoes(const PointCloud2& cloud, const CloudLayout& layout, std::vector<Eigen::Vector3f>& echoes) {
+  echoes.resize(layout.echoes());
+  forEachEcho(cloud, layout,
+              [&](std::size_t i, const Eigen::Vector3f& echo, const std::uint8_t*) { echoes[i] = echo; });
+}
+
+void parseEchoes(const PointCloud2& cloud, const CloudLayout& layout, std::vector<Eigen::Vector3f>& echoes,
+                 EchoTimes& times) {
+  if (!layout.time) {
+    times.clear();
+    return parseEchoes(cloud, layout, echoes);
+  }
+  times.problem.clear();
+  echoes.resize(layout.echoes());
   times.after_stamp.resize(layout.echoes());
-  times.first = std::numeric_limits<double>::infinity();
-  times.last = -times.first;
-  const double stamp = cloud.header.stamp.toSec();
-  double strange = 0.0;
-  forEachPoint(cloud, layout, [&](std::size_t i, const std::uint8_t* point) {
-    const double time = timeAfterStamp(point, *layout.time, stamp, layout.swap_bytes);
+  const TimeReader time_of(*layout.time, cloud.header.stamp.toSec(), layout.swap_bytes);
+  double first = std::numeric_limits<double>::infinity(), last = -first, strange = 0.0;
+  forEachEcho(cloud, layout, [&](std::size_t i, const Eigen::Vector3f& echo, const std::uint8_t* point) {
+    const double time = time_of(point);
+    echoes[i] = echo;
     times.after_stamp[i] = toFloat(time);
-    if (!isEcho(point, layout)) return;
+    if (!echo.allFinite()) return;
     const bool plausible = std::abs(time) <= kMaxScanDuration;
     if (!plausible) strange = time;
-    times.first = std::min(times.first, time);
-    times.last = std::max(times.last, time);
+    first = std::min(first, time);
+    last = std::max(last, time);
   });
-  if (strange != 0.0) {
-    std::ostringstream text;
-    text << "echoes' times are no times of this scan (" << strange << " s after its stamp): not de-skewed";
-    problem = text.str();
+  const bool usable = strange == 0.0 && first <= last;
+  if (!usable) {
+    times.clear();
+    if (strange != 0.0) times.problem = strangeTimes(strange);
+    return;
   }
-  const bool usable = strange == 0.0 && times.first <= times.last;
-  return usable ? times : EchoTimes{};
+  times.first = first;
+  times.last = last;
 }
 
 sensor_msgs::PointCloud2Ptr labelCloud(const PointCloud2& cloud, const CloudLayout& layout, const EchoLabels& labels) {
   auto out = emptyLike(cloud, layout.width, layout.height, layout.labeled_point_step);
   addLabelField(*out, "dynamic", layout.dynamic_offset, layout.point_step);
   addLabelField(*out, "observed", layout.observed_offset, layout.point_step);
-  std::uint8_t* to = out->data.data();
-  forEachPoint(cloud, layout, [&](std::size_t i, const std::uint8_t* point) {
-    std::memcpy(to, point, layout.point_step);
-    to[layout.dynamic_offset] = labels.dynamic[i];
-    to[layout.observed_offset] = labels.observed[i];
-    to += layout.labeled_point_step;
-  });
+  const auto write = [to = out->data.data(), step = layout.labeled_point_step, size = layout.point_step,
+                      at_dynamic = layout.dynamic_offset, at_observed = layout.observed_offset,
+                      dynamic = labels.dynamic.data(),
+                      observed = labels.observed.data()](std::size_t i, const std::uint8_t* point) {
+    std::uint8_t* labeled = to + i * step;
+    copyPoint(labeled, point, size);
+    labeled[at_dynamic] = dynamic[i];
+    labeled[at_observed] = observed[i];
+  };
+  forEachPoint(cloud, layout, write);
   return out;
 }
 
@@ -189,12 +236,13 @@ sensor_msgs::PointCloud2Ptr selectPart(const PointCloud2& cloud, const CloudLayo
   const std::uint8_t wanted = part == CloudPart::kDynamic ? 1 : 0;
   const auto count = std::count(labels.dynamic.begin(), labels.dynamic.end(), wanted);
   auto out = emptyLike(cloud, static_cast<std::size_t>(count), 1, layout.point_step);
-  std::uint8_t* to = out->data.data();
-  forEachPoint(cloud, layout, [&](std::size_t i, const std::uint8_t* point) {
-    if (labels.dynamic[i] != wanted) return;
-    std::memcpy(to, point, layout.point_step);
-    to += layout.point_step;
-  });
+  auto write = [to = out->data.data(), size = layout.point_step, dynamic = labels.dynamic.data(), wanted](
+                   std::size_t i, const std::uint8_t* point) mutable {
+    if (dynamic[i] != wanted) return;
+    copyPoint(to, point, size);
+    to += size;
+  };
+  forEachPoint(cloud, layout, write);
   return out;
 }
 

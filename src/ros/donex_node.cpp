@@ -12,22 +12,20 @@
 
 #include "donex/core/memory_bound.h"
 #include "donex/ros/diagnostics.h"
-#include "donex/ros/explanation_clouds.h"
-#include "donex/ros/markers.h"
-#include "donex/ros/object_messages.h"
 #include "donex/ros/parameters.h"
 #include "donex/ros/pipeline.h"
 #include "donex/ros/reconfigure.h"
+#include "donex/ros/scan_publisher.h"
 
 namespace donex {
 namespace {
 
-constexpr double kLogPeriod = 5.0;          // between messages of one kind [s]
-constexpr double kRetryPeriod = 0.01;       // waiting clouds are asked about this often at least [s]
-constexpr std::uint32_t kCloudQueue = 100;  // what comes while one scan is judged; the pipeline bounds and counts
-constexpr std::uint32_t kOdometryQueue = 1000;
+constexpr double kLogPeriod = 5.0;     // between messages of one kind [s]
+constexpr double kRetryPeriod = 0.01;  // waiting clouds are asked about this often at least [s]
 
-using sensor_msgs::PointCloud2;
+/// A queue of roscpp's that is full drops silently. Ours takes whatever comes while one scan is judged; after that scan
+/// the callbacks, which only enqueue, hand all of it to the pipeline, which bounds and counts.
+constexpr std::uint32_t kUnbounded = 0;
 
 bool usesOdometry(OdometrySource source) { return source == OdometrySource::kPose || source == OdometrySource::kTwist; }
 
@@ -59,10 +57,6 @@ class DonexNode::Implementation {
 
   PipelineEvents events();
   void publish(const LabeledScan& scan);
-  void publishMarkers(const LabeledScan& scan);
-  void publishExplanation(const LabeledScan& scan);
-  void publishCells(const LabeledScan& scan);
-  bool somebodyWatchesCells() const;
 
   /// A throw out of a callback would end the whole manager.
   template <class Function>
@@ -77,12 +71,10 @@ class DonexNode::Implementation {
   std::unique_ptr<tf2_ros::TransformListener> tf_listener_;
   Pipeline pipeline_;
   Diagnostics diagnostics_;
-  MarkerMaker markers_;
+  ScanPublisher publisher_;
   std::unique_ptr<Reconfigure> reconfigure_;
   bool work_is_queued_ = false;
 
-  ros::Publisher labeled_publisher_, dynamic_publisher_, static_publisher_, object_publisher_, marker_publisher_;
-  ros::Publisher explained_publisher_, shadowed_publisher_, seen_through_publisher_;  // for the eye
   ros::ServiceServer reset_service_;
   ros::Subscriber cloud_subscriber_, odometry_subscriber_;
   ros::WallTimer retry_timer_, diagnostics_timer_;
@@ -93,7 +85,8 @@ DonexNode::Implementation::Implementation(const ros::NodeHandle& nh, const ros::
       pnh_(pnh),
       config_(readParameters(pnh)),
       pipeline_(config_, tf_, events()),
-      diagnostics_(nh, pnh, pipeline_, usesOdometry(config_.motion.source)) {
+      diagnostics_(nh, pnh, pipeline_, usesOdometry(config_.motion.source)),
+      publisher_(pnh) {
   ROS_INFO_STREAM_NAMED("donex", "memory that the grid takes for scans of "
                                      << kUsualScan << " echoes: " << std::lround(memoryBound(config_, kUsualScan) / 1e6)
                                      << " MB at most (memory_limit " << config_.memory_limit << " MB)");
@@ -101,20 +94,12 @@ DonexNode::Implementation::Implementation(const ros::NodeHandle& nh, const ros::
   const bool needs_tf = config_.motion.source != OdometrySource::kNone;
   if (needs_tf) tf_listener_ = std::make_unique<tf2_ros::TransformListener>(tf_, nh_);
 
-  labeled_publisher_ = pnh_.advertise<PointCloud2>("labeled_points", 5);
-  dynamic_publisher_ = pnh_.advertise<PointCloud2>("dynamic_points", 5);
-  static_publisher_ = pnh_.advertise<PointCloud2>("static_points", 5);
-  object_publisher_ = pnh_.advertise<MovingObjects>("objects", 5);
-  marker_publisher_ = pnh_.advertise<visualization_msgs::MarkerArray>("markers", 5);
-  explained_publisher_ = pnh_.advertise<PointCloud2>("explained_points", 5);
-  shadowed_publisher_ = pnh_.advertise<PointCloud2>("shadowed_cells", 5);
-  seen_through_publisher_ = pnh_.advertise<PointCloud2>("seen_through_cells", 5);
   reset_service_ = pnh_.advertiseService("reset", &Implementation::onReset, this);
   reconfigure_ = std::make_unique<Reconfigure>(pnh_, config_, [this](const Config& config) { onChange(config); });
 
   const auto hints = ros::TransportHints().tcpNoDelay();
-  cloud_subscriber_ = nh_.subscribe("points", kCloudQueue, &Implementation::onCloud, this, hints);
-  odometry_subscriber_ = nh_.subscribe("odom", kOdometryQueue, &Implementation::onOdometry, this, hints);
+  cloud_subscriber_ = nh_.subscribe("points", kUnbounded, &Implementation::onCloud, this, hints);
+  odometry_subscriber_ = nh_.subscribe("odom", kUnbounded, &Implementation::onOdometry, this, hints);
   retry_timer_ = nh_.createWallTimer(ros::WallDuration(kRetryPeriod), [this](const ros::WallTimerEvent&) {
     if (pipeline_.waiting() != 0) schedule();
   });
@@ -163,7 +148,7 @@ void DonexNode::Implementation::onOdometry(const nav_msgs::OdometryConstPtr& odo
 bool DonexNode::Implementation::onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
   guarded("reset", [&] {
     pipeline_.reset();
-    if (marker_publisher_.getNumSubscribers() != 0) marker_publisher_.publish(markers_.clear());
+    publisher_.clearMarkers();
     response.success = true;
     response.message = "the grid is forgotten";
   });
@@ -185,7 +170,7 @@ void DonexNode::Implementation::schedule() {
 void DonexNode::Implementation::work() {
   work_is_queued_ = false;
   guarded("labelling", [this] {
-    pipeline_.watchCells(somebodyWatchesCells());
+    pipeline_.watchCells(publisher_.somebodyWatchesCells());
     if (pipeline_.step(ros::Time::now().toSec()) && pipeline_.waiting() != 0) schedule();
   });
 }
@@ -212,41 +197,9 @@ PipelineEvents DonexNode::Implementation::events() {
 }
 
 void DonexNode::Implementation::publish(const LabeledScan& scan) {
-  labeled_publisher_.publish(labelCloud(*scan.cloud, scan.layout, scan.labels));
+  publisher_.publishLabels(scan);
   diagnostics_.scanPublished(scan);
-  if (dynamic_publisher_.getNumSubscribers() != 0) {
-    dynamic_publisher_.publish(selectPart(*scan.cloud, scan.layout, scan.labels, CloudPart::kDynamic));
-  }
-  if (static_publisher_.getNumSubscribers() != 0) {
-    static_publisher_.publish(selectPart(*scan.cloud, scan.layout, scan.labels, CloudPart::kStatic));
-  }
-  if (object_publisher_.getNumSubscribers() != 0) {
-    object_publisher_.publish(toMessage(scan.detector, scan.cloud->header.stamp, scan.odom_frame));
-  }
-  if (marker_publisher_.getNumSubscribers() != 0) publishMarkers(scan);
-  publishExplanation(scan);
-}
-
-void DonexNode::Implementation::publishExplanation(const LabeledScan& scan) {
-  if (explained_publisher_.getNumSubscribers() != 0) explained_publisher_.publish(explainScan(scan));
-  if (somebodyWatchesCells()) publishCells(scan);
-}
-
-bool DonexNode::Implementation::somebodyWatchesCells() const {
-  return shadowed_publisher_.getNumSubscribers() != 0 || seen_through_publisher_.getNumSubscribers() != 0;
-}
-
-void DonexNode::Implementation::publishCells(const LabeledScan& scan) {
-  std_msgs::Header header = scan.cloud->header;
-  header.frame_id = scan.odom_frame;
-  const MemoryCells cells = scan.detector.memoryCells();
-  shadowed_publisher_.publish(cellCloud(cells.shadowed, header));
-  seen_through_publisher_.publish(cellCloud(cells.seen_through, header));
-}
-
-void DonexNode::Implementation::publishMarkers(const LabeledScan& scan) {
-  const auto array = markers_.make(scan.detector, config_, scan.cloud->header.stamp, scan.odom_frame);
-  if (!array->markers.empty()) marker_publisher_.publish(array);
+  publisher_.publishTheRest(scan, config_);
 }
 
 DonexNode::DonexNode(const ros::NodeHandle& nh, const ros::NodeHandle& pnh)

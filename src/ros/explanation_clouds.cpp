@@ -4,12 +4,11 @@
 #include <array>
 #include <cstring>
 
-#include <boost/make_shared.hpp>
+#include "donex/ros/cloud_fields.h"
 
 namespace donex {
 namespace {
 
-using sensor_msgs::PointCloud2;
 using sensor_msgs::PointField;
 
 struct Row {
@@ -20,24 +19,8 @@ struct Row {
 };
 static_assert(sizeof(Row) == 20, "the fields below count on it");
 
-void addField(PointCloud2& cloud, const char* name, std::size_t offset, std::uint8_t datatype) {
-  PointField field;
-  field.name = name;
-  field.offset = static_cast<std::uint32_t>(offset);
-  field.datatype = datatype;
-  field.count = 1;
-  cloud.fields.push_back(field);
-}
-
-sensor_msgs::PointCloud2Ptr emptyCloud(const std_msgs::Header& header, std::size_t points, std::size_t point_step) {
-  auto cloud = boost::make_shared<PointCloud2>();
-  cloud->header = header;
-  cloud->height = 1;
-  cloud->width = static_cast<std::uint32_t>(points);
-  cloud->point_step = static_cast<std::uint32_t>(point_step);
-  cloud->row_step = cloud->width * cloud->point_step;
-  cloud->is_dense = 0;
-  cloud->data.resize(cloud->row_step);
+sensor_msgs::PointCloud2Ptr cloudOfPlaces(const std_msgs::Header& header, std::size_t points, std::size_t point_step) {
+  auto cloud = makeCloud(header, points, point_step);
   addField(*cloud, "x", 0, PointField::FLOAT32);
   addField(*cloud, "y", 4, PointField::FLOAT32);
   addField(*cloud, "z", 8, PointField::FLOAT32);
@@ -77,7 +60,7 @@ sensor_msgs::PointCloud2Ptr explainScan(const LabeledScan& scan) {
   const std::vector<EchoReason> reasons = scan.detector.reasons();
   const bool tells = reasons.size() == positions.size();
   const Eigen::Isometry3f base_from_sensor = scan.scan.base_from_sensor.cast<float>();
-  auto cloud = emptyCloud(scan.cloud->header, positions.size(), sizeof(Row));
+  auto cloud = cloudOfPlaces(scan.cloud->header, positions.size(), sizeof(Row));
   addField(*cloud, "rgb", offsetof(Row, rgb), PointField::FLOAT32);
   addField(*cloud, "reason", offsetof(Row, reason), PointField::UINT8);
   for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -92,7 +75,7 @@ sensor_msgs::PointCloud2Ptr explainScan(const LabeledScan& scan) {
 }
 
 sensor_msgs::PointCloud2Ptr cellCloud(const std::vector<Eigen::Vector3f>& centers, const std_msgs::Header& header) {
-  auto cloud = emptyCloud(header, centers.size(), sizeof(Eigen::Vector3f));
+  auto cloud = cloudOfPlaces(header, centers.size(), sizeof(Eigen::Vector3f));
   if (!centers.empty()) std::memcpy(cloud->data.data(), centers.front().data(), cloud->data.size());
   return cloud;
 }

@@ -73,8 +73,9 @@ struct XmlRpcReader {
   }
   void operator()(const ParameterInfo& info, bool& out) {
     XmlRpcValue* value = find(info);
-    if (value != nullptr && expect(info, *value, XmlRpcValue::TypeBoolean, "a boolean"))
+    if (value != nullptr && expect(info, *value, XmlRpcValue::TypeBoolean, "a boolean")) {
       out = static_cast<bool&>(*value);
+    }
   }
   void operator()(const ParameterInfo& info, std::string& out) {
     XmlRpcValue* value = find(info);
@@ -170,8 +171,9 @@ void addTo(Faults& faults, const Faults& more) { faults.insert(faults.end(), mor
 
 Faults applyParameters(const XmlRpcValue& values, Config& config) {
   if (!values.valid()) return config.faults();
-  if (values.getType() != XmlRpcValue::TypeStruct)
+  if (values.getType() != XmlRpcValue::TypeStruct) {
     return {std::string("the parameters are ") + typeName(values) + ", must be a map"};
+  }
   XmlRpcValue copy = values;
   Faults faults;
   std::set<std::string> known{"diagnostic_period"};  // diagnostic_updater's own

@@ -31,9 +31,7 @@ void Pipeline::addCloud(const sensor_msgs::PointCloud2ConstPtr& cloud, double no
   const LayoutVerdict verdict = judgeLayout(*cloud, config_.cloud);
   if (const auto* error = std::get_if<LayoutError>(&verdict)) return drop(DropReason::kBadLayout, error->text);
 
-  WaitingCloud waiting{cloud, std::get<CloudLayout>(verdict), {}, now, std::chrono::steady_clock::now()};
-  const bool deskews = config_.motion.deskew && config_.motion.source != OdometrySource::kNone;
-  if (deskews) readTimes(waiting);
+  WaitingCloud waiting{cloud, std::get<CloudLayout>(verdict), counts_.clouds_in, now, std::chrono::steady_clock::now()};
   const bool is_old = last_labeled_ && cloud->header.stamp < *last_labeled_;
   if (is_old) return suspect(std::move(waiting));
   if (suspect_cloud_) {
@@ -42,16 +40,6 @@ void Pipeline::addCloud(const sensor_msgs::PointCloud2ConstPtr& cloud, double no
     suspect_cloud_.reset();
   }
   place(std::move(waiting));
-}
-
-void Pipeline::readTimes(WaitingCloud& waiting) {
-  std::string problem;
-  waiting.times = parseEchoTimes(*waiting.cloud, waiting.layout, problem);
-  const std::string& wanted = config_.cloud.time_field;
-  const bool is_missing = !wanted.empty() && !waiting.layout.time;
-  if (is_missing)
-    problem = "the cloud has no field '" + wanted + "' with times (FLOAT32, FLOAT64 or UINT32): not de-skewed";
-  if (!problem.empty()) events_.strange_times(problem);
 }
 
 void Pipeline::place(WaitingCloud cloud) {
@@ -150,11 +138,25 @@ bool Pipeline::step(double now) {
 MotionAnswer Pipeline::motionOf(const WaitingCloud& waiting, bool settle) {
   const auto& header = waiting.cloud->header;
   try {
-    return motion_.during({header.stamp, waiting.times.first, waiting.times.last}, header.frame_id, settle);
+    parse(waiting);
+    return motion_.during({header.stamp, times_.first, times_.last}, header.frame_id, settle);
   } catch (const std::exception& error) {
     // ros::Time throws where a time of the scan lies before 1970.
     return MotionMissing{DropReason::kInternalError, error.what(), false};
   }
+}
+
+void Pipeline::parse(const WaitingCloud& waiting) {
+  if (parsed_ == waiting.number) return;
+  const auto start = std::chrono::steady_clock::now();
+  if (deskews()) {
+    parseEchoes(*waiting.cloud, waiting.layout, scan_.echoes, times_);
+  } else {
+    times_.clear();
+    parseEchoes(*waiting.cloud, waiting.layout, scan_.echoes);
+  }
+  parsed_ = waiting.number;
+  parsing_time_ = secondsSince(start);
 }
 
 void Pipeline::label(const WaitingCloud& waiting, const ScanMotion& motion) {
@@ -163,17 +165,30 @@ void Pipeline::label(const WaitingCloud& waiting, const ScanMotion& motion) {
   scan_.stamp = stamp.toSec();
   scan_.base_from_sensor = motion.base_from_sensor;
   scan_.odom_from_base = motion.odom_from_base;
-  parseEchoes(*waiting.cloud, waiting.layout, scan_.echoes);
   if (motion.track != nullptr) {
     const MotionFault fault =
-        deskew(*motion.track, scan_.stamp, scan_.base_from_sensor, waiting.times.after_stamp, scan_.echoes);
+        deskew(*motion.track, scan_.stamp, scan_.base_from_sensor, times_.after_stamp, scan_.echoes);
     if (fault != MotionFault::kNone) throw std::runtime_error(std::string("de-skewing: ") + describe(fault));
   }
   moveToOrigin();
   detector_->process(scan_, labels_);
   last_labeled_ = stamp;
   events_.labeled({waiting.cloud, waiting.layout, scan_, labels_, *detector_, motion.odom_frame, waiting.received,
-                   secondsSince(start)});
+                   parsing_time_ + secondsSince(start)});
+  tellStrangeTimes(waiting);
+}
+
+bool Pipeline::deskews() const { return config_.motion.deskew && config_.motion.source != OdometrySource::kNone; }
+
+void Pipeline::tellStrangeTimes(const WaitingCloud& waiting) {
+  const std::string& wanted = config_.cloud.time_field;
+  const bool is_missing = deskews() && !wanted.empty() && !waiting.layout.time;
+  if (is_missing) {
+    events_.strange_times("the cloud has no field '" + wanted +
+                          "' with times (FLOAT32, FLOAT64 or UINT32): not de-skewed");
+  } else if (!times_.problem.empty()) {
+    events_.strange_times(times_.problem);
+  }
 }
 
 /// Lines of sight begin in the origin of the scan's frame: in a merged cloud that is not where the sensor is.

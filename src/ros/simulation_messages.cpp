@@ -5,6 +5,8 @@
 #include <boost/make_shared.hpp>
 #include <tf2_eigen/tf2_eigen.h>
 
+#include "donex/ros/cloud_fields.h"
+
 namespace donex {
 namespace {
 
@@ -18,15 +20,6 @@ struct Row {
   std::uint16_t padding;
 };
 static_assert(sizeof(Row) == 28, "the fields below count on it");
-
-void addField(sensor_msgs::PointCloud2& cloud, const char* name, std::size_t offset, std::uint8_t datatype) {
-  sensor_msgs::PointField field;
-  field.name = name;
-  field.offset = static_cast<std::uint32_t>(offset);
-  field.datatype = datatype;
-  field.count = 1;
-  cloud.fields.push_back(field);
-}
 
 void addFields(sensor_msgs::PointCloud2& cloud) {
   using Field = sensor_msgs::PointField;
@@ -42,16 +35,12 @@ void addFields(sensor_msgs::PointCloud2& cloud) {
 }  // namespace
 
 sensor_msgs::PointCloud2Ptr toCloud(const simulation::SimulatedScan& scan, const SimulationFrames& frames) {
-  const auto cloud = boost::make_shared<sensor_msgs::PointCloud2>();
-  cloud->header.stamp = ros::Time(scan.stamp);
-  cloud->header.frame_id = frames.sensor;
-  cloud->height = 1;
-  cloud->width = static_cast<std::uint32_t>(scan.echoes.size());
-  cloud->point_step = sizeof(Row);
-  cloud->row_step = cloud->point_step * cloud->width;
+  std_msgs::Header header;
+  header.stamp = ros::Time(scan.stamp);
+  header.frame_id = frames.sensor;
+  const auto cloud = makeCloud(header, scan.echoes.size(), sizeof(Row));
   cloud->is_dense = true;
   addFields(*cloud);
-  cloud->data.resize(cloud->row_step);
   for (std::size_t i = 0; i < scan.echoes.size(); ++i) {
     const simulation::SimulatedEcho& echo = scan.echoes[i];
     const Row row{echo.position.x(), echo.position.y(), echo.position.z(), echo.intensity,

@@ -105,7 +105,19 @@ TEST(ParseEchoes, nothingCameBack) {
 
 class EchoTime : public testing::Test {
  protected:
-  EchoTimes timesOf(const PointCloud2& cloud) { return parseEchoTimes(cloud, layoutOf(cloud), problem_); }
+  EchoTimes timesOf(const PointCloud2& cloud) {
+    std::vector<Eigen::Vector3f> echoes, alone;
+    EchoTimes times;
+    times.after_stamp = {7.0F};  // of an earlier scan
+    times.problem = "an earlier one";
+    parseEchoes(cloud, layoutOf(cloud), echoes, times);
+    parseEchoes(cloud, layoutOf(cloud), alone);
+    const std::size_t bytes = alone.size() * sizeof(Eigen::Vector3f);
+    EXPECT_EQ(echoes.size(), alone.size());
+    EXPECT_EQ(std::memcmp(echoes.data(), alone.data(), bytes), 0) << "with times or without: the same echoes";
+    problem_ = times.problem;
+    return times;
+  }
 
   /// Three echoes 0, 50 and 100 ms after the stamp, written as `unit` times that plus `start`.
   EchoTimes threeTimes(const std::string& name, std::uint8_t datatype, double unit, double start, bool big = false) {

@@ -25,13 +25,12 @@ TEST(SimulationMessages, aDistortedScanHasItsTimes) {
   const auto cloud = toCloud(scan, {});
   EXPECT_EQ(cloud->header.stamp.toSec(), 5.1);
   const CloudLayout layout = std::get<CloudLayout>(judgeLayout(*cloud));
-  std::string problem;
-  const EchoTimes times = parseEchoTimes(*cloud, layout, problem);
-  ASSERT_EQ(times.after_stamp.size(), scan.echoes.size()) << problem;
+  std::vector<Eigen::Vector3f> echoes;
+  EchoTimes times;
+  parseEchoes(*cloud, layout, echoes, times);
+  ASSERT_EQ(times.after_stamp.size(), scan.echoes.size()) << times.problem;
   EXPECT_LT(times.first, -0.09);
   EXPECT_LE(times.last, 0.0);
-  std::vector<Eigen::Vector3f> echoes;
-  parseEchoes(*cloud, layout, echoes);
   for (std::size_t i = 0; i < echoes.size(); i += 100) {
     EXPECT_EQ(echoes[i], scan.echoes[i].position);
     EXPECT_EQ(times.after_stamp[i], scan.echoes[i].time);

@@ -1,6 +1,7 @@
 // PointCloud2 -> the core's echoes, and labels -> PointCloud2. `layout` is always judgeLayout's of the same cloud.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -20,16 +21,20 @@ void parseEchoes(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layou
 struct EchoTimes {
   std::vector<float> after_stamp;  ///< after the cloud's stamp [s], one an echo; negative before it
   double first = 0.0, last = 0.0;  ///< the span of the times of echoes with finite coordinates [s]
+  std::string problem;             ///< why the cloud's times cannot be used; empty where they can, or where it has none
 
   bool empty() const { return after_stamp.empty(); }
+  /// Keeps its memory.
+  void clear();
 };
 
 /// A scan takes less than this; times further from the stamp belong to another clock [s].
 constexpr double kMaxScanDuration = 1.0;
 
-/// Empty where the cloud has no times, or where they cannot be times of this scan (another clock than the
-/// stamp's, not finite); `problem` then says why.
-EchoTimes parseEchoTimes(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout, std::string& problem);
+/// Echoes and their times in one pass, into memory that is kept from scan to scan. No times where the cloud has none,
+/// or where they cannot be times of this scan (another clock than the stamp's, not finite).
+void parseEchoes(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout, std::vector<Eigen::Vector3f>& echoes,
+                 EchoTimes& times);
 
 /// The input with the fields `dynamic` and `observed`: same header, same order, every byte of every point kept.
 sensor_msgs::PointCloud2Ptr labelCloud(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout,

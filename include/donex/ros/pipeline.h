@@ -86,12 +86,14 @@ class Pipeline {
   struct WaitingCloud {
     sensor_msgs::PointCloud2ConstPtr cloud;
     CloudLayout layout;
-    EchoTimes times;
+    std::size_t number = 0;  // in the order of arrival, from 1 on
     double arrival = 0.0;
     std::chrono::steady_clock::time_point received;
   };
 
-  void readTimes(WaitingCloud& waiting);
+  bool deskews() const;
+  void parse(const WaitingCloud& waiting);
+  void tellStrangeTimes(const WaitingCloud& waiting);
   void place(WaitingCloud cloud);
   void suspect(WaitingCloud cloud);
   void suspect(const nav_msgs::Odometry& odometry);
@@ -116,7 +118,11 @@ class Pipeline {
   std::optional<WaitingCloud> suspect_cloud_;
   std::optional<nav_msgs::Odometry> suspect_odometry_;
 
-  Scan scan_;  // kept for their memory
+  // Of the scan in hand; kept for their memory. A cloud is parsed while it waits for odometry, once.
+  std::size_t parsed_ = 0;     // the number of the cloud that scan_ and times_ hold
+  double parsing_time_ = 0.0;  // [s]
+  Scan scan_;
+  EchoTimes times_;
   EchoLabels labels_;
 };
 
