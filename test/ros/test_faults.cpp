@@ -69,10 +69,11 @@ TEST_F(Faults, odometryIsNotANumber) {
   for (int scan = 0; scan < 10; ++scan) {
     advance();
     auto bad = boost::make_shared<nav_msgs::Odometry>(test::odometryAt(now_));
-    if (scan % 2 == 0)
+    if (scan % 2 == 0) {
       bad->pose.pose.position.x = std::nan("");
-    else
+    } else {
       bad->pose.pose.orientation.w = 0.2;
+    }
     odometry_.publish(bad);
     sendCloud(now_);
   }

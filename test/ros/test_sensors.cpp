@@ -67,10 +67,11 @@ boost::shared_ptr<PointCloud2> distortedScan(const DriverCloud& driver) {
     const double fired = kStart + firedAfter(i), after = fired - stamp;
     const Eigen::Vector3d seen = target(i) - Eigen::Vector3d(kSpeed * after, 0.0, 0.0);
     const bool nothing = i % kNothing == 0;
-    if (nothing)
+    if (nothing) {
       builder.at(i, driver.no_return, driver.no_return, driver.no_return);
-    else
+    } else {
       builder.at(i, seen.x(), seen.y(), seen.z());
+    }
     builder.set(i, driver.time_field, driver.units_per_second * (driver.absolute ? fired : after));
   }
   return builder.build();

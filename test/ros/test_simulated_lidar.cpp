@@ -61,8 +61,9 @@ TEST_F(SimulatedLidarTest, sendsCloudsAndOdometryInTheirOwnRhythms) {
   EXPECT_EQ(received_.front()->header.frame_id, "velodyne");
   EXPECT_EQ(samples_.front()->header.frame_id, "odom");
   EXPECT_EQ(samples_.front()->child_frame_id, "base_link");
-  for (std::size_t i = 0; i < received_.size(); ++i)
+  for (std::size_t i = 0; i < received_.size(); ++i) {
     EXPECT_EQ(received_[i]->data, bytes_[i]) << "touched after it was sent";
+  }
 }
 
 TEST_F(SimulatedLidarTest, tellsTheMountingAndTheMotionByTf) {
