@@ -1,8 +1,7 @@
-#include "detectors.h"
-
 #include <algorithm>
 #include <cmath>
 
+#include "detectors.h"
 #include "donex/core/candidate_finder.h"
 #include "donex/core/ground.h"
 #include "donex/core/newness.h"
@@ -202,7 +201,6 @@ std::unique_ptr<Detector> makeEvidenceDetector3d(const Config& config) {
 std::unique_ptr<Detector> makeEvidenceDetector2d(const Config& config) {
   return std::make_unique<EvidenceDetector<Newness2d>>(config);
 }
-
 
 double evidenceBytes(const Config& config, double echoes) {
   constexpr double kInGrid = sizeof(Eigen::Vector3f) + 1.0;  // place and inside

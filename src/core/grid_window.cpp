@@ -57,8 +57,7 @@ void GridWindow::moveTo(const Eigen::Isometry3d& odom_from_base) {
     return;
   }
   const Region swept = sweptRegion(region_);
-  const Eigen::Vector3d low =
-      odom_from_base.translation() + Eigen::Vector3d(swept.x_min, swept.y_min, swept.z_min);
+  const Eigen::Vector3d low = odom_from_base.translation() + Eigen::Vector3d(swept.x_min, swept.y_min, swept.z_min);
   for (int axis = 0; axis < 3; ++axis) min_index_[axis] = floorToBrick(low[axis] / voxel_size_);
   grid_from_base_ = odom_from_base;
 }

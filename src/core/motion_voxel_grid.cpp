@@ -18,18 +18,17 @@
 namespace donex {
 namespace {
 
-constexpr int kScans = 10;              // over which the counters run
-constexpr float kGround = 0.25F;        // above a region's plane an echo belongs to an obstacle [m]
-constexpr double kNeighbour = 0.6065;   // a Gaussian of one voxel, one voxel away
-constexpr double kLeastRatio = 0.0;     // of the counters, as a logarithm: more often free than occupied
-constexpr double kHistory = 0.95;       // the sights that are kept [s]: ten scans of a 10 Hz sensor
-constexpr double kSpacing = 0.09;       // [s]
+constexpr int kScans = 10;             // over which the counters run
+constexpr float kGround = 0.25F;       // above a region's plane an echo belongs to an obstacle [m]
+constexpr double kNeighbour = 0.6065;  // a Gaussian of one voxel, one voxel away
+constexpr double kLeastRatio = 0.0;    // of the counters, as a logarithm: more often free than occupied
+constexpr double kHistory = 0.95;      // the sights that are kept [s]: ten scans of a 10 Hz sensor
+constexpr double kSpacing = 0.09;      // [s]
 
 class MotionVoxelGridDetector : public ComparisonDetector<Detector> {
  public:
   explicit MotionVoxelGridDetector(const Config& config)
-      : ComparisonDetector(config),
-        sights_(kHistory, kSpacing, static_cast<float>(config.voxel_size), {false, 0.0}) {}
+      : ComparisonDetector(config), sights_(kHistory, kSpacing, static_cast<float>(config.voxel_size), {false, 0.0}) {}
 
  protected:
   void judge(const Scan& scan, const GridScan& in_grid, EchoLabels& labels) override {
@@ -84,8 +83,7 @@ class MotionVoxelGridDetector : public ComparisonDetector<Detector> {
     for (int axis = 0; axis < 3; ++axis) {
       fixed += kNeighbour * (hitsOf(voxel + Index3::Unit(axis)) + hitsOf(voxel - Index3::Unit(axis)));
     }
-    const Eigen::Vector3f center =
-        (in_window.cast<float>().array() + 0.5F) * static_cast<float>(window().voxelSize());
+    const Eigen::Vector3f center = (in_window.cast<float>().array() + 0.5F) * static_cast<float>(window().voxelSize());
     const double dynamic = sights_.ask(center, -std::numeric_limits<double>::infinity(), kScans).free;
     return std::log((dynamic + 1.0) / (fixed + 1.0)) > kLeastRatio;
   }
@@ -108,7 +106,7 @@ class MotionVoxelGridDetector : public ComparisonDetector<Detector> {
   SightHistory sights_;
   RegionPlanes ground_;
   std::unordered_map<VoxelKey, Hits, VoxelHash> hits_;  ///< by voxel of the odometry frame
-  std::vector<Eigen::Vector3f> points_;  ///< in the grid's window [m]
+  std::vector<Eigen::Vector3f> points_;                 ///< in the grid's window [m]
   std::vector<std::uint8_t> is_echo_;
 };
 

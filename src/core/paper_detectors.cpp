@@ -1,7 +1,6 @@
-#include "detectors.h"
-
 #include <algorithm>
 
+#include "detectors.h"
 #include "donex/core/grid_2d.h"
 #include "donex/core/grid_3d.h"
 #include "donex/core/stream_guard.h"

@@ -51,8 +51,8 @@ void PointShadows::sortByDirection(const std::vector<Eigen::Vector3f>& echoes,
     if (is_echo[i] == 0) continue;
     ranges_[i] = echoes[i].cast<double>().norm();
     directions_[i] = echoes[i].cast<double>() / ranges_[i];
-    bin_of_[i] = static_cast<std::uint32_t>(rowOf(elevationOf(directions_[i])) * kColumns +
-                                            columnOf(azimuthOf(directions_[i])));
+    bin_of_[i] =
+        static_cast<std::uint32_t>(rowOf(elevationOf(directions_[i])) * kColumns + columnOf(azimuthOf(directions_[i])));
     ++first_[bin_of_[i]];
     by_range_.push_back(i);
   }

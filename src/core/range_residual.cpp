@@ -34,9 +34,7 @@ class RangeResidualDetector : public ComparisonDetector<Detector> {
   }
 
   void forget() override { last_.clear(); }
-  std::size_t methodBytes() const override {
-    return image_.memoryBytes() + last_.capacity() * sizeof(Eigen::Vector3f);
-  }
+  std::size_t methodBytes() const override { return image_.memoryBytes() + last_.capacity() * sizeof(Eigen::Vector3f); }
 
  private:
   void project(const Eigen::Isometry3f& sensor_from_last) {

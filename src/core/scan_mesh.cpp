@@ -9,8 +9,8 @@
 namespace donex {
 namespace {
 
-constexpr int kColumns = 1800;         // 0.2 degrees: about what a sensor at 10 Hz has between two shots
-constexpr int kFarthestColumn = 3;     // a column without neighbours may be this many columns away
+constexpr int kColumns = 1800;      // 0.2 degrees: about what a sensor at 10 Hz has between two shots
+constexpr int kFarthestColumn = 3;  // a column without neighbours may be this many columns away
 constexpr float kPi = 3.14159265F;
 constexpr float kLeastCosine = 0.03F;  // flatter than any ground in reach: a triangle across a step in depth
 constexpr float kRoom = 0.02F;         // by which the meeting point may leave the triangle's own ranges [share]

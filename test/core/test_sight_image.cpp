@@ -54,8 +54,7 @@ class AgainstPlainReading : public ::testing::TestWithParam<Case> {
 
   /// Asks somewhere in a pixel that saw as far as `range`, often near that; `seen` counts the answers.
   template <class Answer>
-  void ask(const Sights::Pixel& pixel, const std::optional<double>& range, std::array<int, 4>& seen,
-           Answer&& answer) {
+  void ask(const Sights::Pixel& pixel, const std::optional<double>& range, std::array<int, 4>& seen, Answer&& answer) {
     constexpr double kRounding = 0.03;  // ranges are rounded down to 0.02 m
     const double near_surface = range ? *range + draw(-1.0, 1.0) : 10.0;
     const double asked = draw(0, 1) == 0 ? draw(0.6, 60.0) : std::max(near_surface, 0.6);

@@ -65,8 +65,8 @@ class Newness3d : public Newness {
     const auto known = voxels_.find(voxel);
     if (known == voxels_.end()) {
       const bool is_first_scan = now() == 1;
-      const bool free = !is_first_scan &&
-                        (!config_.free_evidence || wasSeenFree(history, point, kBeforeEverything, false));
+      const bool free =
+          !is_first_scan && (!config_.free_evidence || wasSeenFree(history, point, kBeforeEverything, false));
       voxels_[voxel] = born(voxel, free);
     } else if (known->second.last_hit < now() - 1) {
       const bool settled = !isYoung(known->second.birth, known->second.was_free);
