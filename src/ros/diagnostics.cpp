@@ -1,10 +1,10 @@
 #include "donex/ros/diagnostics.h"
 
-#include <algorithm>
-#include <cmath>
 #include <fstream>
 
 #include <unistd.h>
+
+#include "donex/core/timing.h"
 
 namespace donex {
 namespace {
@@ -28,13 +28,6 @@ template <class Entries, class TimeOf>
 void forgetOld(Entries& entries, const TimeOf& time_of) {
   const Clock::time_point horizon = Clock::now() - kWindow;
   while (!entries.empty() && time_of(entries.front()) < horizon) entries.pop_front();
-}
-
-double percentile(std::vector<double> values, double fraction) {
-  if (values.empty()) return 0.0;
-  const auto rank = std::lround(fraction * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return values[static_cast<std::size_t>(rank)];
 }
 
 double residentMegabytes() {
@@ -121,7 +114,7 @@ double Diagnostics::publishedRate() const {
 double Diagnostics::medianProcessing() const {
   std::vector<double> values;
   for (const Figures& figures : published_) values.push_back(figures.processing);
-  return percentile(values, 0.5);
+  return quantile(values, 0.5);
 }
 
 void Diagnostics::addFigures(DiagnosticStatusWrapper& status) const {
@@ -135,10 +128,10 @@ void Diagnostics::addFigures(DiagnosticStatusWrapper& status) const {
   status.addf("odometry in [Hz]", "%.2f", rateOf(odometry_arrivals_));
   const bool both = last_cloud_ && last_odometry_;
   status.addf("odometry behind the clouds [s]", "%.3f", both ? (newest_cloud_ - newest_odometry_).toSec() : 0.0);
-  status.addf("time a scan, median [ms]", "%.2f", 1e3 * percentile(processing, 0.5));
-  status.addf("time a scan, p99 [ms]", "%.2f", 1e3 * percentile(processing, 0.99));
-  status.addf("latency in to out, median [ms]", "%.2f", 1e3 * percentile(latency, 0.5));
-  status.addf("latency in to out, p99 [ms]", "%.2f", 1e3 * percentile(latency, 0.99));
+  status.addf("time a scan, median [ms]", "%.2f", 1e3 * quantile(processing, 0.5));
+  status.addf("time a scan, p99 [ms]", "%.2f", 1e3 * quantile(processing, 0.99));
+  status.addf("latency in to out, median [ms]", "%.2f", 1e3 * quantile(latency, 0.5));
+  status.addf("latency in to out, p99 [ms]", "%.2f", 1e3 * quantile(latency, 0.99));
   status.addf("memory of the grid [MB]", "%.1f", static_cast<double>(pipeline_.detector().memoryBytes()) / 1e6);
   status.addf("memory of the process [MB]", "%.1f", residentMegabytes());
 }

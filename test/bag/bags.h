@@ -90,4 +90,25 @@ inline LabelBagSummary label(const std::filesystem::path& in, const std::filesys
   return labelBag({in}, {out}, options, [](std::size_t, std::size_t) {});
 }
 
+/// Where labelBag writes by default.
+inline constexpr const char* kLabeled = "/donex/labeled_points";
+
+/// The bytes of the field `dynamic`.
+inline std::vector<std::uint8_t> dynamicOf(const sensor_msgs::PointCloud2& cloud) {
+  std::vector<std::uint8_t> labels;
+  for (const auto& field : cloud.fields) {
+    if (field.name != "dynamic") continue;
+    for (std::size_t i = 0; i < cloud.width; ++i) labels.push_back(cloud.data[i * cloud.point_step + field.offset]);
+  }
+  return labels;
+}
+
+using ScanLabels = std::vector<std::vector<std::uint8_t>>;  // one an echo, scan by scan
+
+inline long countDynamic(const ScanLabels& labels) {
+  long count = 0;
+  for (const auto& scan : labels) count += std::count(scan.begin(), scan.end(), 1);
+  return count;
+}
+
 }  // namespace donex::test

@@ -5,6 +5,7 @@ import pathlib
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 import unittest
 import xmlrpc.client
@@ -21,6 +22,14 @@ CLOUDS = 20
 DEADLINE = 120.0  # for the first clouds on a slow machine [s]
 
 
+def run(program, *arguments):
+    result = subprocess.run([str(INSTALL_SPACE / "lib" / "donex" / program), *map(str, arguments)],
+                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True, timeout=60)
+    if result.returncode != 0:
+        raise AssertionError(f"{program} ended with {result.returncode}: {result.stdout}")
+    return result.stdout
+
+
 class InstallSpace(unittest.TestCase):
     def test_package_is_the_installed_one(self):
         path = pathlib.Path(rospkg.RosPack().get_path("donex")).resolve()
@@ -28,10 +37,15 @@ class InstallSpace(unittest.TestCase):
 
     def test_programs_explain_themselves(self):
         for program in PROGRAMS:
-            path = INSTALL_SPACE / "lib" / "donex" / program
-            result = subprocess.run([str(path), "--help"], stdout=subprocess.PIPE, universal_newlines=True, timeout=60)
-            self.assertEqual(result.returncode, 0, program)
-            self.assertIn(program, result.stdout)
+            self.assertIn(program, run(program, "--help"))
+
+    def test_an_archive_finds_its_program_and_its_page(self):
+        with tempfile.TemporaryDirectory() as folder:
+            bags, out = pathlib.Path(folder) / "in", pathlib.Path(folder) / "out"
+            bags.mkdir()
+            run("donex_simulate", "street", bags / "drive.bag", "--duration", 1, "--beams", 16)
+            run("donex_archive", bags, out)
+            self.assertIn('"name": "drive"', (out / "report.html").read_text())
 
     def test_launch_files_load(self):
         launch = INSTALL_SPACE / "share" / "donex" / "launch"
