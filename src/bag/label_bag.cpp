@@ -9,6 +9,8 @@
 #include <rosbag/view.h>
 #include <tf2_msgs/TFMessage.h>
 
+#include "checked_message.h"
+#include "donex/bag/bag_check.h"
 #include "donex/bag/bag_file.h"
 #include "donex/bag/ground_truth.h"
 #include "donex/core/whole_drive.h"
@@ -50,8 +52,8 @@ class Labeler {
 template <class Message>
 typename Message::ConstPtr parse(const rosbag::MessageInstance& message) {
   try {
-    const auto parsed = message.instantiate<Message>();
-    if (parsed) return parsed;
+    const auto parsed = message.instantiate<Checked<Message>>();
+    if (parsed) return typename Message::ConstPtr(parsed, &parsed->message);
   } catch (const ros::Exception& error) {
     throw DataError(fmt::format("{} at {:.9f} s: cannot be read ({})", message.getTopic(), message.getTime().toSec(),
                                 error.what()));
@@ -143,6 +145,7 @@ class Recording {
  public:
   explicit Recording(const BagParts& files) : files_(files) {
     for (const fs::path& file : files) {
+      checkBag(file);
       openBag(file, *bags_.emplace_back(std::make_unique<rosbag::Bag>()));
       all_.addQuery(*bags_.back());
       views_.push_back(std::make_unique<rosbag::View>(*bags_.back()));
@@ -189,11 +192,8 @@ void pass(Recording& recording, Labeler& labeler, LabelBagSummary& summary, cons
   }
 }
 
-}  // namespace
-
-LabelBagSummary judgeBag(const BagParts& in, const LabelBagOptions& options, const LabelBagSink& sink,
-                         const LabelBagProgress& progress) {
-  Recording recording(in);
+LabelBagSummary judge(Recording& recording, const LabelBagOptions& options, const LabelBagSink& sink,
+                      const LabelBagProgress& progress) {
   LabelBagSummary topics = chooseTopics(recording.all(), options, recording.name());
   const std::size_t messages = recording.all().size();
   if (messages != 0) topics.duration = (recording.all().getEndTime() - recording.all().getBeginTime()).toSec();
@@ -215,14 +215,20 @@ LabelBagSummary judgeBag(const BagParts& in, const LabelBagOptions& options, con
   return summary;
 }
 
+}  // namespace
+
+LabelBagSummary judgeBag(const BagParts& in, const LabelBagOptions& options, const LabelBagSink& sink,
+                         const LabelBagProgress& progress) {
+  Recording recording(in);
+  return judge(recording, options, sink, progress);
+}
+
 LabelBagSummary labelBag(const BagParts& in, const BagParts& out, const LabelBagOptions& options,
                          const LabelBagProgress& progress) {
   if (in.empty() || in.size() != out.size()) throw std::invalid_argument("a bag has no output, or an output no bag");
-  {
-    Recording recording(in);  // faults before the first copy
-    requireNewTopic(recording.all(), options.labeled, recording.name());
-    chooseTopics(recording.all(), options, recording.name());
-  }
+  Recording recording(in);  // faults before the first copy
+  requireNewTopic(recording.all(), options.labeled, recording.name());
+  chooseTopics(recording.all(), options, recording.name());
   const std::string topic = absoluteTopic(options.labeled);
   std::size_t writing = 0;
   auto writer = std::make_unique<BagWriter>(out[0], in[0]);
@@ -237,7 +243,7 @@ LabelBagSummary labelBag(const BagParts& in, const BagParts& out, const LabelBag
     advance(part);
     writer->bag().write(topic, now, *labelCloud(*scan.cloud, scan.layout, scan.labels));
   };
-  LabelBagSummary summary = judgeBag(in, options, write, progress);
+  LabelBagSummary summary = judge(recording, options, write, progress);
   advance(out.size() - 1);
   writer->commit();
   return summary;

@@ -9,7 +9,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.config.region = {-5.0, 5.0, -5.0, 5.0, -2.0, 2.0};
   options.config.motion.source = donex::OdometrySource::kNone;
   try {
-    donex::labelBag(in, out, options, [](std::size_t, std::size_t) {});
+    donex::labelBag({in}, {out}, options, [](std::size_t, std::size_t) {});
   } catch (const donex::DataError&) {
   }
   return 0;
