@@ -51,7 +51,8 @@ template <class Visit>
 void forEachPoint(const PointCloud2& cloud, const CloudLayout layout, Visit&& visit) {
   const std::uint8_t* row = cloud.data.data();
   std::size_t index = 0;
-  for (std::size_t i = 0; i < layout.height; ++i, row += layout.row_step) {
+  const std::size_t rows = layout.width == 0 ? 0 : layout.height;  // billions of empty rows need no byte
+  for (std::size_t i = 0; i < rows; ++i, row += layout.row_step) {
     const std::uint8_t* point = row;
     for (std::size_t column = 0; column < layout.width; ++column, point += layout.point_step) visit(index++, point);
   }

@@ -97,6 +97,19 @@ TEST(ParseEchoes, emptyAndOneEcho) {
   EXPECT_EQ(echoesOf(*CloudBuilder().xyz().size(1).at(0, 1, 2, 3).build()).size(), 1U);
 }
 
+/// A cloud of billions of empty rows needs no byte; this many would take for ever.
+TEST(ParseEchoes, rowsWithoutEchoesAreNotWalked) {
+  const auto cloud = CloudBuilder().xyz().field("time", PointField::FLOAT32).size(0).build();
+  CloudLayout layout = std::get<CloudLayout>(judgeLayout(*cloud));
+  layout.height = std::size_t{1} << 60U;
+  std::vector<Eigen::Vector3f> echoes(3);
+  parseEchoes(*cloud, layout, echoes);
+  EXPECT_TRUE(echoes.empty());
+  EchoTimes times;
+  parseEchoes(*cloud, layout, echoes, times);
+  EXPECT_TRUE(times.after_stamp.empty());
+}
+
 TEST(ParseEchoes, nothingCameBack) {
   const auto echoes = echoesOf(*CloudBuilder().xyz().size(2).at(0, 0, 0, 0).at(1, 0, 0, 1e-6).build());
   EXPECT_TRUE(echoes[0].array().isNaN().all());
