@@ -5,10 +5,12 @@ endif()
 set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O3 -g -DNDEBUG")
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 
-# Sanitizers for everything that is built here (scripts/sanitize, scripts/fuzz): the first finding ends a program.
+# Sanitizers for everything that is built here (scripts/sanitize, scripts/fuzz): the first finding ends a program. With
+# them the assertions of Eigen, Boost and the standard library, which see an index out of range that stays in memory.
 set(DONEX_SANITIZE "" CACHE STRING "Sanitizers, as address,undefined or thread")
 if(DONEX_SANITIZE)
   add_compile_options(-fsanitize=${DONEX_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
+  add_compile_options(-UNDEBUG -D_GLIBCXX_ASSERTIONS)
   add_link_options(-fsanitize=${DONEX_SANITIZE})
 endif()
 

@@ -101,7 +101,9 @@ class OtherProcess : public FaultsTest {
 };
 
 TEST_F(OtherProcess, managerKilledAndRestarted) {
-  const std::vector<std::string> manager{"rosrun", "nodelet", "nodelet", "standalone", "donex/DonexNodelet"};
+  const std::string preload = std::string("LD_PRELOAD=") + DONEX_PRELOAD;
+  const std::vector<std::string> manager{"rosrun",  "--prefix",   "env " + preload,    "nodelet",
+                                         "nodelet", "standalone", "donex/DonexNodelet"};
   start(manager);
   waitUntilConnected();
   driveWell();
