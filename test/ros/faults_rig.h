@@ -35,12 +35,11 @@ class FaultsTest : public ManagerTest {
       return std::abs(ros::Time::now().toSec() - now) < 1e-6;
     }));
   }
-  /// The classifier looks after waiting clouds every 10 ms by the wall clock; the simulated one must not outrun it.
-  void pace() { rate_.sleep(); }
-
+  /// The vehicle's next scan. A vehicle has a rhythm of its own, here six times as fast as a real one: nothing is waited
+  /// for. (The classifier looks after waiting clouds by the wall clock, which the simulated one must not outrun.)
   void advance() {
     setClock(now_ + kPeriod);
-    pace();
+    rhythm_.sleep();
   }
   void drive(std::size_t scans) {
     for (std::size_t i = 0; i < scans; ++i) {
@@ -102,7 +101,7 @@ class FaultsTest : public ManagerTest {
   double now_ = kBegin;
   std::size_t clouds_sent_ = 0;
   ros::Publisher clock_;
-  ros::WallRate rate_{60.0};
+  ros::WallRate rhythm_{60.0};
 };
 
 }  // namespace donex::test

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <nav_msgs/Odometry.h>
 #include <nodelet/loader.h>
+#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <sensor_msgs/PointCloud2.h>
 #include <tf2_msgs/TFMessage.h>
@@ -20,16 +21,15 @@
 
 namespace donex::test {
 
-/// Serves this process's callbacks until `condition` holds; false when it does not in time.
+/// Serves this process's callbacks, each as it comes, until `condition` holds; false when it does not in time.
 inline bool waitFor(const std::function<bool()>& condition, double seconds = 20.0) {
   const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(seconds);
-  while (ros::ok()) {
-    ros::spinOnce();
-    if (condition()) return true;
+  while (ros::ok() && !condition()) {
     if (ros::WallTime::now() > deadline) return false;
-    ros::WallDuration(0.002).sleep();
+    // Some conditions change without a callback: they are looked at this often [s].
+    ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.002));
   }
-  return false;
+  return ros::ok();
 }
 
 class ManagerTest : public testing::Test {

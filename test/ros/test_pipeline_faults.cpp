@@ -93,15 +93,36 @@ TEST(PipelineFaults, oneStragglerIsDroppedAndTheGridStays) {
   EXPECT_TRUE(rig.forgotten.empty());
 }
 
+/// The paper's rule alone: whatever is new is dynamic at once, also a single echo.
+Config smallPaperConfig() {
+  Config config = paperConfig(Method::kDonex3d);
+  config.region = test::smallConfig().region;
+  return config;
+}
+
+/// A ring where the lines of sight to the usual one have been: new, unless the grid is.
+void driveInside(PipelineRig& rig, double stamp) {
+  rig.odometry(stamp);
+  rig.pipeline.addCloud(test::plainCloud(test::ring(36, test::kInside), stamp), stamp);
+  rig.run(stamp);
+}
+
+const std::vector<std::uint8_t> kNone(36, 0), kAll(36, 1);
+
 TEST(PipelineFaults, aLoopedBagStartsAnewOnceAndLosesNothing) {
-  PipelineRig rig;
-  for (int loop = 0; loop < 3; ++loop) drive(rig, 100.0, 40);
+  PipelineRig rig(smallPaperConfig());
+  for (int loop = 0; loop < 3; ++loop) {
+    driveInside(rig, 100.0);
+    drive(rig, 100.1, 38);
+    driveInside(rig, 103.9);
+  }
   EXPECT_EQ(rig.labeled.size(), 120U);
   EXPECT_EQ(rig.pipeline.counts().dropped.total(), 0U);
   EXPECT_EQ(rig.forgotten.size(), 2U) << "said once a loop";
-  // Nothing is dynamic in the first scan after a restart.
+  // The same echoes: nothing is dynamic in the first scan after a restart, all are in the last one before.
   for (const std::size_t first : {0U, 40U, 80U}) {
-    EXPECT_EQ(rig.labeled[first].labels.dynamic, std::vector<std::uint8_t>(36, 0));
+    EXPECT_EQ(rig.labeled[first].labels.dynamic, kNone);
+    EXPECT_EQ(rig.labeled[first + 39].labels.dynamic, kAll);
   }
 }
 
@@ -199,9 +220,9 @@ TEST(PipelineFaults, finishSettlesWhatWaits) {
 }
 
 TEST(PipelineFaults, configureRefusesFaultsAndRebuildsOnlyForTheGrid) {
-  PipelineRig rig;
+  PipelineRig rig(smallPaperConfig());
   drive(rig, 100.0, 2);
-  Config config = test::smallConfig();
+  Config config = smallPaperConfig();
   config.voxel_size = 7.0;
   config.region.x_max = -60.0;
   try {
@@ -211,17 +232,19 @@ TEST(PipelineFaults, configureRefusesFaultsAndRebuildsOnlyForTheGrid) {
     EXPECT_NE(std::string(error.what()).find("voxel_size"), std::string::npos);
     EXPECT_NE(std::string(error.what()).find("x_max"), std::string::npos);
   }
-  const Detector* before = &rig.pipeline.detector();
-  config = test::smallConfig();
+  drive(rig, 100.2, 8);
+  config = smallPaperConfig();
   config.node.markers = false;
   rig.pipeline.configure(config);
-  EXPECT_EQ(&rig.pipeline.detector(), before) << "a switch keeps the grid";
-  rig.cloud(100.2);
-  config.voxel_size = 0.5;
+  driveInside(rig, 101.0);
+  EXPECT_EQ(rig.labeled.at(10).labels.dynamic, kAll) << "a switch keeps the grid";
+  drive(rig, 101.1, 10);
+  rig.pipeline.addCloud(test::plainCloud(test::ring(36, test::kInside), 102.1), 102.1);
+  config.voxel_size = 0.3;
   rig.pipeline.configure(config);
-  drive(rig, 100.3, 2);
-  EXPECT_EQ(rig.labeled.size(), 5U) << "the waiting cloud is not lost";
-  EXPECT_EQ(rig.labeled[2].labels.dynamic, std::vector<std::uint8_t>(36, 0)) << "first scan of the new grid";
+  drive(rig, 102.2, 2);
+  ASSERT_EQ(rig.labeled.size(), 24U) << "the waiting cloud is not lost";
+  EXPECT_EQ(rig.labeled[21].labels.dynamic, kNone) << "first scan of the new grid";
 }
 
 TEST(PipelineFaults, everyCloudIsAccountedForUnderRandomFaults) {

@@ -75,6 +75,18 @@ TEST_F(SimulatedLidarTest, tellsTheMountingAndTheMotionByTf) {
   EXPECT_NEAR(buffer.lookupTransform("base_link", "velodyne", ros::Time(0)).transform.translation.z, 1.73, 1e-6);
 }
 
+TEST_F(SimulatedLidarTest, tellsTheMountingAgainToWhomTheLatchedMessagePassedBy) {
+  std::size_t told = 0;
+  const boost::function<void(const tf2_msgs::TFMessageConstPtr&)> count = [&](const auto& message) {
+    ASSERT_EQ(message->transforms.size(), 1U);
+    EXPECT_EQ(message->transforms[0].child_frame_id, "velodyne");
+    ++told;
+  };
+  const ros::Subscriber subscriber = nh_.subscribe<tf2_msgs::TFMessage>("/tf_static", 10, count);
+  const SimulatedLidar lidar(nh_, pnh_);
+  EXPECT_TRUE(waitFor([&] { return told >= 3; }, 60.0)) << told;
+}
+
 TEST_F(SimulatedLidarTest, endsWithItsDuration) {
   pnh_.setParam("duration", 0.5);
   const SimulatedLidar lidar(nh_, pnh_);
