@@ -126,14 +126,21 @@ void SimulatedLidar::Implementation::play() {
   constexpr double kHeadStart = 0.5;  // [s]
   settings_.options.start_stamp = ros::WallTime::now().toSec() + kHeadStart;
   simulator_ = std::make_unique<Simulator>(settings_.scene, settings_.options);
-  const Eigen::Isometry3d mounting = simulator_->baseFromSensor();
-  mounting_broadcaster_.sendTransform(mountingOf(mounting, settings_.options.start_stamp, settings_.frames));
+  const auto mounting = mountingOf(simulator_->baseFromSensor(), settings_.options.start_stamp, settings_.frames);
+  mounting_broadcaster_.sendTransform(mounting);
   ROS_INFO("simulated LiDAR: %s, %d beams: %s", settings_.scene.c_str(), simulator_->beams(),
            simulation::sceneMeaning(settings_.scene).c_str());
 
   const auto measure = [this] { return std::async(std::launch::async, [this] { return nextTurn(); }); };
   auto coming = measure();
+  // roscpp can lose a latched message for him who subscribes at the very moment in which it is published: told again.
+  constexpr double kTellAgain = 1.0;  // [s]
+  double told = 0.0;
   while (const std::optional<Turn> turn = coming.get()) {
+    if (turn->stamp >= told + kTellAgain) {
+      mounting_broadcaster_.sendTransform(mounting);
+      told = turn->stamp;
+    }
     coming = measure();
     send(*turn);
     const std::lock_guard<std::mutex> lock(mutex_);
