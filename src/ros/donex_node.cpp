@@ -74,6 +74,7 @@ class DonexNode::Implementation {
   ScanPublisher publisher_;
   std::unique_ptr<Reconfigure> reconfigure_;
   bool work_is_queued_ = false;
+  double work_queued_at_ = 0.0;  // [s]
 
   ros::ServiceServer reset_service_;
   ros::Subscriber cloud_subscriber_, odometry_subscriber_;
@@ -163,6 +164,7 @@ void DonexNode::Implementation::onChange(const Config& config) {
 void DonexNode::Implementation::schedule() {
   if (work_is_queued_) return;
   work_is_queued_ = true;
+  work_queued_at_ = ros::Time::now().toSec();
   // Behind whatever has arrived: messages are taken in first, so that the pipeline can see (and count) an overload.
   nh_.getCallbackQueue()->addCallback(boost::make_shared<QueuedCall>([this] { work(); }), queueId());
 }
@@ -171,7 +173,9 @@ void DonexNode::Implementation::work() {
   work_is_queued_ = false;
   guarded("labelling", [this] {
     pipeline_.watchCells(publisher_.somebodyWatchesCells());
-    if (pipeline_.step(ros::Time::now().toSec()) && pipeline_.waiting() != 0) schedule();
+    // Not the time it is by now: what had arrived by then is taken in, so no cloud is given up on for lack of odometry
+    // that is in the queue already.
+    if (pipeline_.step(work_queued_at_) && pipeline_.waiting() != 0) schedule();
   });
 }
 
