@@ -82,7 +82,7 @@ sensor_msgs::PointCloud2Ptr toCloud(const SequenceScan& scan) {
   std_msgs::Header header;
   header.stamp = ros::Time(scan.stamp);
   header.frame_id = kSensorFrame;
-  const auto cloud = makeCloud(header, scan.echoes.size(), sizeof(Eigen::Vector4f));
+  auto cloud = makeCloud(header, scan.echoes.size(), sizeof(Eigen::Vector4f));
   cloud->is_dense = std::all_of(scan.echoes.begin(), scan.echoes.end(), [](const auto& e) { return e.allFinite(); });
   for (const char* name : {"x", "y", "z", "intensity"}) {
     addField(*cloud, name, cloud->fields.size() * sizeof(float), sensor_msgs::PointField::FLOAT32);

@@ -16,12 +16,12 @@ Clusters::Clusters(double reach, const Settings& settings)
 int Clusters::widthOf(double reach, double cell) { return 2 * static_cast<int>(std::ceil(reach / cell)) + 1; }
 
 int& Clusters::makeCell(int x, int y, int z) {
-  int& column = column_at_[static_cast<std::size_t>(y * width_ + x)];
+  int& column = column_at_[columnOf(x, y)];
   if (column == kNone) {
     column = static_cast<int>(cell_in_column_.size()) / layers_;
     cell_in_column_.resize(cell_in_column_.size() + static_cast<std::size_t>(layers_), kNone);
   }
-  return cell_in_column_[static_cast<std::size_t>(column * layers_ + z)];
+  return cell_in_column_[placeOf(column, z)];
 }
 
 void Clusters::connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
@@ -30,7 +30,7 @@ void Clusters::connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::V
   hangSkirt();
   for (int cell = 0; cell < static_cast<int>(cells_.size()); ++cell) join(cell);
   number();
-  for (const Cell& cell : cells_) column_at_[static_cast<std::size_t>(cell.y * width_ + cell.x)] = kNone;
+  for (const Cell& cell : cells_) column_at_[columnOf(cell.x, cell.y)] = kNone;
 }
 
 void Clusters::fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
@@ -90,7 +90,7 @@ void Clusters::join(int cell) {
   // The half of the neighbourhood behind this cell finds it from there.
   for (int y = first_y; y <= last_y; ++y) {
     for (int x = first_x; x <= last_x; ++x) {
-      const int column = column_at_[static_cast<std::size_t>(y * width_ + x)];
+      const int column = column_at_[columnOf(x, y)];
       if (column == kNone) continue;
       const int* cell_at = cell_in_column_.data() + static_cast<std::ptrdiff_t>(column) * layers_;
       for (int z = here.z; z <= last_z; ++z) {

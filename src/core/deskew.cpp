@@ -56,10 +56,10 @@ class MotionTable {
       if (!pose->ok()) return pose->fault();
     }
     const Eigen::Isometry3d sensor_from_odom = (*at_stamp * mounting).inverse();
-    const double intervals = std::max(1.0, std::ceil((span.last - span.first) / kKnotStep));
+    const auto intervals = std::max(1, static_cast<int>(std::ceil((span.last - span.first) / kKnotStep)));
     first_ = span.first;
     step_ = (span.last - span.first) / intervals;
-    for (double knot = 0.0; knot <= intervals; ++knot) {
+    for (int knot = 0; knot <= intervals; ++knot) {
       const auto pose = knot < intervals ? motion.poseAt(stamp + first_ + knot * step_) : at_last;
       if (!pose) return pose.fault();
       knots_.emplace_back(sensor_from_odom * *pose * mounting);

@@ -1,6 +1,7 @@
 #include "donex/core/echo_block.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -30,8 +31,9 @@ DONEX_WIDE_LOOPS void placeAll(const Placement& p, const float* echoes, EchoBloc
   const float high_x = p.region_high.x(), high_y = p.region_high.y(), high_z = p.region_high.z();
   const float extent_x = p.extent.x(), extent_y = p.extent.y(), extent_z = p.extent.z();
   int found = 0;
+  constexpr std::ptrdiff_t kNext = 3;  // floats
   for (int i = 0; i < EchoBlock::kSize; ++i) {
-    const float x = echoes[3 * i], y = echoes[3 * i + 1], z = echoes[3 * i + 2];
+    const float x = echoes[kNext * i], y = echoes[kNext * i + 1], z = echoes[kNext * i + 2];
     const bool is_echo = x * x + (y * y + z * z) <= kFarthestEcho * kFarthestEcho;  // false for NaN
     const float bx = base_x(x, y, z), by = base_y(x, y, z), bz = base_z(x, y, z);
     const float ux = to_x(x, y, z), uy = to_y(x, y, z), uz = to_z(x, y, z);
@@ -75,10 +77,10 @@ void EchoBlock::place(const Placement& placement, const Eigen::Vector3f* echoes,
   static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float));
   count = echoes_count;
   if (count == kSize) return placeAll(placement, echoes->data(), *this);
-  alignas(64) float padded[3 * kSize];
-  std::fill(std::copy_n(echoes->data(), 3 * count, padded), padded + 3 * kSize,
+  alignas(64) std::array<float, 3 * std::size_t{kSize}> padded;
+  std::fill(std::copy_n(echoes->data(), 3 * count, padded.begin()), padded.end(),
             std::numeric_limits<float>::quiet_NaN());
-  placeAll(placement, padded, *this);
+  placeAll(placement, padded.data(), *this);
 }
 
 }  // namespace donex

@@ -172,7 +172,7 @@ class EvidenceDetector : public Detector {
       const double since = clock_.stampOf(record.last_hit);
       auto& kind =
           wasFree(config_.evidence, history_, point, since, true, settled) ? cells.seen_through : cells.shadowed;
-      kind.push_back((judged_.odom_from_points * point.cast<double>()).cast<float>());
+      kind.emplace_back((judged_.odom_from_points * point.cast<double>()).cast<float>());
     });
     return cells;
   }

@@ -1,6 +1,7 @@
 #include "donex/core/grid_2d.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -107,7 +108,8 @@ void Grid2d::judge(Part& part, std::size_t first, const EchoBlock& block, EchoLa
   layout_.locate(block, at);
   const float lift = layout_.lift();
   std::uint8_t* dynamic = labels.dynamic.data() + first;
-  int new_echoes[EchoBlock::kSize + 1], new_count = 0;
+  std::array<int, EchoBlock::kSize + 1> new_echoes;  // not set: a block's worth of it is written each time
+  int new_count = 0;
   for (int i = 0; i < block.count; ++i) {
     if (i + kAhead < EchoBlock::kSize) __builtin_prefetch(&cells_[at.slot[i + kAhead]], 1);
     const HeightRange& remembered = cells_[at.slot[i]].remembered;
@@ -123,8 +125,8 @@ void Grid2d::judge(Part& part, std::size_t first, const EchoBlock& block, EchoLa
     dynamic[i] = static_cast<std::uint8_t>(is_new);
     taken.extend(height);
   }
-  std::copy_n(block.observed, block.count, labels.observed.data() + first);
-  part.echoes.add(first, block, new_echoes, new_count);
+  std::copy_n(block.observed.data(), block.count, labels.observed.data() + first);
+  part.echoes.add(first, block, new_echoes.data(), new_count);
 }
 
 void Grid2d::takeOver(Part& part) {

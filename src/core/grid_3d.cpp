@@ -1,6 +1,7 @@
 #include "donex/core/grid_3d.h"
 
 #include <algorithm>
+#include <array>
 
 namespace donex {
 namespace {
@@ -111,7 +112,8 @@ void Grid3d::hit(Part& part, std::size_t first, const EchoBlock& block, const Bl
                  HitOf&& hit_of) {
   const bool keeps_order = window_.compensation() == Compensation::kResample;
   std::uint8_t* dynamic = labels.dynamic.data() + first;
-  int new_echoes[EchoBlock::kSize + 1], new_count = 0;
+  std::array<int, EchoBlock::kSize + 1> new_echoes;  // not set: a block's worth of it is written each time
+  int new_count = 0;
   for (int i = 0; i < block.count; ++i) {
     if (i + kAhead < EchoBlock::kSize) __builtin_prefetch(&bricks_[at.slot[i + kAhead]], 1);
     const std::uint64_t mask = maskOf(at.bit[i]);
@@ -123,8 +125,8 @@ void Grid3d::hit(Part& part, std::size_t first, const EchoBlock& block, const Bl
     new_echoes[new_count] = i;
     new_count += is_new ? 1 : 0;  // written in any case: no branch to guess
   }
-  std::copy_n(block.observed, block.count, labels.observed.data() + first);
-  part.echoes.add(first, block, new_echoes, new_count);
+  std::copy_n(block.observed.data(), block.count, labels.observed.data() + first);
+  part.echoes.add(first, block, new_echoes.data(), new_count);
 }
 
 void Grid3d::Part::begin(std::size_t most_echoes) {

@@ -127,7 +127,7 @@ std::vector<Eigen::Vector3f> cellCenters(const GridWindow& window, std::vector<I
   std::vector<Eigen::Vector3f> centers;
   centers.reserve(voxels.size());
   for (const Index3& voxel : voxels) {
-    centers.push_back((window.odomFromGrid() * window.indexToCenter(voxel)).cast<float>());
+    centers.emplace_back((window.odomFromGrid() * window.indexToCenter(voxel)).cast<float>());
   }
   return centers;
 }

@@ -32,7 +32,7 @@ constexpr float kNone = std::numeric_limits<float>::infinity();
 DONEX_WIDE_LOOPS void findCells(const Eigen::Vector3f& sensor, int width, const Eigen::Vector3f* echoes,
                                 std::size_t count, int* cells) {
   const float sensor_x = sensor.x(), sensor_y = sensor.y();
-  const float* xyz = reinterpret_cast<const float*>(echoes);
+  const auto* xyz = reinterpret_cast<const float*>(echoes);
   const int middle = width / 2;
   for (std::size_t i = 0; i < count; ++i) {
     const float across = std::floor((xyz[3 * i] - sensor_x) / kCell + 0.5F);

@@ -34,7 +34,8 @@ void ScanClock::reset() {
 
 double ScanClock::stampOf(std::uint32_t scan) const {
   const bool is_remembered = scan > 0 && scan_ - scan < kRememberedStamps;
-  return is_remembered ? stamps_[scan % kRememberedStamps] : kBeforeEverything;
+  if (!is_remembered) return kBeforeEverything;
+  return stamps_[scan % kRememberedStamps];
 }
 
 bool wasFree(const EvidenceConfig& config, const SightHistory& history, const Eigen::Vector3f& point, double since,

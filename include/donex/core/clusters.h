@@ -46,8 +46,14 @@ class Clusters {
 
   /// Number of the cell, or kNone. Columns are dense, their cells are held only where there is one.
   int cellAt(int x, int y, int z) const {
-    const int column = column_at_[static_cast<std::size_t>(y * width_ + x)];
-    return column == kNone ? kNone : cell_in_column_[static_cast<std::size_t>(column * layers_ + z)];
+    const int column = column_at_[columnOf(x, y)];
+    return column == kNone ? kNone : cell_in_column_[placeOf(column, z)];
+  }
+  std::size_t columnOf(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+  }
+  std::size_t placeOf(int column, int z) const {
+    return static_cast<std::size_t>(column) * static_cast<std::size_t>(layers_) + static_cast<std::size_t>(z);
   }
   static int widthOf(double reach, double cell);
   int& makeCell(int x, int y, int z);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -24,14 +25,16 @@ struct Placement {
 /// Some neighbouring echoes of a scan in the window.
 struct EchoBlock {
   static constexpr int kSize = 256;
+  template <class Number>
+  using Row = std::array<Number, kSize>;
 
   int none = 0;                                    ///< how many of the entries are no echo
   int count = 0;                                   ///< what is behind holds no echo: NaN, not inside
-  alignas(64) float x[kSize], y[kSize], z[kSize];  ///< [voxels]; NaN where the echo is none (non-finite, too far)
+  alignas(64) Row<float> x, y, z;                  ///< [voxels]; NaN where the echo is none (non-finite, too far)
   /// 1 inside the region of interest and the window, the echo hits the grid; else 0.
-  alignas(64) std::int32_t inside[kSize];
-  alignas(64) std::uint8_t observed[kSize];                                 ///< the same as bytes
-  alignas(64) std::int32_t voxel_x[kSize], voxel_y[kSize], voxel_z[kSize];  ///< 0 where not inside
+  alignas(64) Row<std::int32_t> inside;
+  alignas(64) Row<std::uint8_t> observed;                    ///< the same as bytes
+  alignas(64) Row<std::int32_t> voxel_x, voxel_y, voxel_z;  ///< 0 where not inside
 
   Eigen::Vector3i voxel(int i) const { return {voxel_x[i], voxel_y[i], voxel_z[i]}; }
 
@@ -44,8 +47,8 @@ struct EchoBlock {
 
 /// Cells that are to be looked up, by echo of a block: which place in memory, and which bit of it.
 struct BlockSlots {
-  alignas(64) std::uint32_t slot[EchoBlock::kSize];
-  alignas(64) std::uint32_t bit[EchoBlock::kSize];
+  alignas(64) EchoBlock::Row<std::uint32_t> slot;
+  alignas(64) EchoBlock::Row<std::uint32_t> bit;
 };
 
 /// Shows `visit(first, block)` blocks `first_block` to `last_block` (not included) of the echoes, in order.

@@ -1,6 +1,7 @@
 // The voxels between sensor and echo: Amanatides & Woo, "A fast voxel traversal algorithm" (1987).
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -89,11 +90,11 @@ class LineOfSight {
     const LineOfSight& line_;
     int steps_left_;
     Index3 voxel_;
-    double next_[3];
+    std::array<double, 3> next_;
   };
 
-  Iterator begin() const { return Iterator(*this, (end_ - start_).cwiseAbs().sum()); }
-  Iterator end() const { return Iterator(*this, 0); }
+  Iterator begin() const { return {*this, (end_ - start_).cwiseAbs().sum()}; }
+  Iterator end() const { return {*this, 0}; }
 
  private:
   /// Parameter (0 origin, 1 echo) at which the line enters index `i` of `axis` from its neighbour.
@@ -104,7 +105,7 @@ class LineOfSight {
 
   Eigen::Vector3f origin_;
   Index3 start_, end_, step_;
-  double inverse_[3];
+  std::array<double, 3> inverse_;
 };
 
 }  // namespace donex

@@ -67,10 +67,10 @@ class Evaluation {
   void add(std::size_t scan_index, const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint32_t>& truth,
            const std::vector<std::uint32_t>& prediction);
 
-  /// The same; `speedOf` tells an instance's speed [m/s], or nothing, and fills bySpeed.
+  /// The same; `speed_of` tells an instance's speed [m/s], or nothing, and fills bySpeed.
   using SpeedOf = std::function<std::optional<double>(std::uint32_t instance)>;
   void add(std::size_t scan_index, const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint32_t>& truth,
-           const std::vector<std::uint32_t>& prediction, const SpeedOf& speedOf);
+           const std::vector<std::uint32_t>& prediction, const SpeedOf& speed_of);
 
   std::size_t scans() const { return scans_; }
   const Counts& total() const { return total_; }
