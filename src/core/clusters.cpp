@@ -125,9 +125,10 @@ double Clusters::bytesFor(double reach, const Settings& settings, double echoes,
 }
 
 std::size_t Clusters::memoryBytes() const {
-  return (column_at_.capacity() + cell_in_column_.capacity() + of_.capacity() + number_of_root_.capacity()) *
-             sizeof(int) +
-         cells_.capacity() * sizeof(Cell) + echoes_in_.capacity() * sizeof(std::size_t) + skirt_.capacity() * sizeof(skirt_[0]);
+  const std::size_t numbers =
+      column_at_.capacity() + cell_in_column_.capacity() + of_.capacity() + number_of_root_.capacity();
+  return numbers * sizeof(int) + cells_.capacity() * sizeof(Cell) + echoes_in_.capacity() * sizeof(std::size_t) +
+         skirt_.capacity() * sizeof(skirt_[0]);
 }
 
 }  // namespace donex

@@ -6,6 +6,7 @@
 #include "donex/core/ground.h"
 #include "donex/core/newness.h"
 #include "donex/core/object_tracker.h"
+#include "donex/core/pi.h"
 #include "donex/core/storage.h"
 #include "donex/core/stream_guard.h"
 
@@ -17,7 +18,7 @@ constexpr std::size_t kExpectedAhead = 12;  // echoes; long enough for memory to
 constexpr double kHistorySpacing = 0.09;    // [s] a 10 Hz sensor's every scan, a 20 Hz sensor's every second
 
 SightHistory historyOf(const EvidenceConfig& e) {
-  constexpr double kRadians = 3.14159265358979 / 180.0;
+  constexpr double kRadians = kPi / 180.0;
   return SightHistory(e.history_length, kHistorySpacing, static_cast<float>(e.sight_margin),
                       {e.careful_sight, std::tan(e.sight_gap * kRadians)});
 }

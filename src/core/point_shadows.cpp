@@ -7,11 +7,12 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "donex/core/pi.h"
+
 namespace donex {
 namespace {
 
 constexpr int kColumns = 360, kRows = 180;  // bins of one degree
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kBin = kPi / 180.0;
 constexpr float kUnset = std::numeric_limits<float>::infinity();
 

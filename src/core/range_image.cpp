@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "donex/core/pi.h"
+
 namespace donex {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kDegree = kPi / 180.0;
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "comparison_detector.h"
 #include "detectors.h"
 #include "donex/core/motion_belief.h"
+#include "donex/core/pi.h"
 #include "donex/core/scan_mesh.h"
 
 namespace donex {
@@ -43,7 +44,7 @@ MotionBelief beliefOf(const ScanMesh::Surface& surface, float range) {
 class RayTracingDetector : public ComparisonDetector<Detector> {
  public:
   explicit RayTracingDetector(const Config& config)
-      : ComparisonDetector(config), largest_gap_(config.evidence.sight_gap * 3.14159265358979 / 180.0) {}
+      : ComparisonDetector(config), largest_gap_(config.evidence.sight_gap * kPi / 180.0) {}
 
  protected:
   void judge(const Scan& scan, const GridScan& in_grid, EchoLabels& labels) override {

@@ -5,6 +5,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "donex/core/pi.h"
+
 namespace donex {
 namespace {
 
@@ -14,7 +16,6 @@ constexpr int kRounds = 4;            // of fitting and leaving out what is far 
 constexpr std::size_t kLeast = 20;    // points that make a plane
 constexpr float kLargestTilt = 0.1F;  // between a plane and the one before [tan]
 constexpr float kLargestJump = 0.3F;  // at the border between them [m]
-constexpr float kPi = 3.14159265F;
 
 }  // namespace
 
@@ -23,7 +24,7 @@ std::size_t RegionPlanes::regionOf(const Eigen::Vector3f& p) {
   const auto ring = static_cast<std::size_t>(
       std::min<std::ptrdiff_t>(std::upper_bound(kRingEnds.begin(), kRingEnds.end(), range) - kRingEnds.begin(),
                                static_cast<std::ptrdiff_t>(kRingEnds.size()) - 1));
-  const float turn = (std::atan2(p.y(), p.x()) + kPi) / (2.0F * kPi) * kSectors;
+  const float turn = (std::atan2(p.y(), p.x()) + kPiF) / (2.0F * kPiF) * kSectors;
   const auto sector = static_cast<std::size_t>(std::clamp(static_cast<int>(turn), 0, kSectors - 1));
   return sector * kRingEnds.size() + ring;
 }

@@ -42,10 +42,11 @@ std::pmr::memory_resource* ScanMemory::resource() const { return &pool_->resourc
 
 void ScanMemory::release() {
   const std::size_t taken = bytes();
-  if (pool_->overflow.bytes == 0)
+  if (pool_->overflow.bytes == 0) {
     pool_->resource.release();
-  else
+  } else {
     pool_ = std::make_unique<Pool>(taken);
+  }
 }
 
 std::size_t ScanMemory::bytes() const { return pool_->kept.size() + pool_->overflow.bytes; }

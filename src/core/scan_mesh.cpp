@@ -6,26 +6,27 @@
 
 #include <Eigen/Geometry>
 
+#include "donex/core/pi.h"
+
 namespace donex {
 namespace {
 
-constexpr int kColumns = 1800;      // 0.2 degrees: about what a sensor at 10 Hz has between two shots
-constexpr int kFarthestColumn = 3;  // a column without neighbours may be this many columns away
-constexpr float kPi = 3.14159265F;
+constexpr int kColumns = 1800;         // 0.2 degrees: about what a sensor at 10 Hz has between two shots
+constexpr int kFarthestColumn = 3;     // a column without neighbours may be this many columns away
 constexpr float kLeastCosine = 0.03F;  // flatter than any ground in reach: a triangle across a step in depth
 constexpr float kRoom = 0.02F;         // by which the meeting point may leave the triangle's own ranges [share]
 
 float azimuthOf(const Eigen::Vector3f& p) { return std::atan2(p.y(), p.x()); }
 float elevationOf(const Eigen::Vector3f& p) { return std::atan2(p.z(), p.head<2>().norm()); }
 
-float columnsOf(float azimuth) { return (azimuth + kPi) * (kColumns / (2.0F * kPi)); }
+float columnsOf(float azimuth) { return (azimuth + kPiF) * (kColumns / (2.0F * kPiF)); }
 int wrapped(int column) { return (column % kColumns + kColumns) % kColumns; }
 
 /// From one angle to another, in (-pi, pi].
 float turnTo(float to, float from) {
   const float turn = to - from;
-  if (turn > kPi) return turn - 2.0F * kPi;
-  return turn <= -kPi ? turn + 2.0F * kPi : turn;
+  if (turn > kPiF) return turn - 2.0F * kPiF;
+  return turn <= -kPiF ? turn + 2.0F * kPiF : turn;
 }
 
 /// Where the direction meets the plane of the three corners.

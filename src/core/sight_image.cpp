@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "donex/core/pi.h"
 #include "simd.h"
 
 namespace donex {
@@ -15,8 +16,8 @@ constexpr float kSteepest = 1.2F;     // tangent beyond which nothing is asked
 constexpr float kRangeStep = 0.02F;   // [m]
 constexpr float kNearest = 0.3F;      // [m] nothing is asked nearer to the sensor's axis
 /// Of an image that covers everything.
-constexpr auto kPixels = static_cast<std::size_t>(kColumns) * static_cast<std::size_t>(2.0F * kSteepest / kRowHeight + 1.0F);
-constexpr float kPi = 3.14159265F;
+constexpr auto kPixels =
+    static_cast<std::size_t>(kColumns) * static_cast<std::size_t>(2.0F * kSteepest / kRowHeight + 1.0F);
 
 /// atan2 to 1e-4 rad, the same on every machine; monotone within an octant, which is all a column needs.
 inline float azimuthOf(float y, float x) {
@@ -24,8 +25,8 @@ inline float azimuthOf(float y, float x) {
   const float a = std::min(ax, ay) / std::max(ax, ay);
   const float s = a * a;
   float angle = ((-0.0464964749F * s + 0.15931422F) * s - 0.327622764F) * s * a + a;
-  angle = ay > ax ? 0.5F * kPi - angle : angle;
-  angle = x < 0.0F ? kPi - angle : angle;
+  angle = ay > ax ? 0.5F * kPiF - angle : angle;
+  angle = x < 0.0F ? kPiF - angle : angle;
   return y < 0.0F ? -angle : angle;
 }
 
@@ -40,7 +41,7 @@ inline Projected project(float x, float y, float z) {
   const float horizontal = std::sqrt(x * x + y * y);
   const float slope = z / horizontal;
   const bool valid = static_cast<int>(horizontal > kNearest) & static_cast<int>(std::abs(slope) < kSteepest);
-  const float turn = (azimuthOf(y, x) + kPi) * (kColumns / (2.0F * kPi));
+  const float turn = (azimuthOf(y, x) + kPiF) * (kColumns / (2.0F * kPiF));
   const float row = (slope + kSteepest) / kRowHeight;
   return {valid, static_cast<int>(valid ? turn : 0.0F) & (kColumns - 1), static_cast<int>(valid ? row : 0.0F),
           std::sqrt(horizontal * horizontal + z * z)};

@@ -57,8 +57,8 @@ class BirthMemory {
   void reset();
   const GridWindow& window() const { return window_; }
   std::size_t memoryBytes() const;
-  /// What memoryBytes will be for a window of so many voxels, as long as surfaces fill no more bricks than the ground plan
-  /// has [bytes].
+  /// What memoryBytes will be for a window of so many voxels, as long as surfaces fill no more bricks than the ground
+  /// plan has [bytes].
   static double bytesFor(const Eigen::Vector3d& extent);
 
  private:

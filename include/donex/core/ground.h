@@ -46,7 +46,8 @@ class Ground {
   static int widthOf(double reach);
   std::size_t indexOf(int x, int y) const {
     const int middle = width_ / 2;
-    return static_cast<std::size_t>(y + middle) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x + middle);
+    return static_cast<std::size_t>(y + middle) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(x + middle);
   }
   float heightIn(int cell, float z) const;
   static Eigen::Vector2f offsetOf(const Cell& cell);  ///< from the sensor's cell [m]

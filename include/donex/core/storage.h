@@ -6,8 +6,8 @@
 
 namespace donex {
 
-/// Resizes, and where it must grow takes an eighth more: the next scans differ a little, and the usual doubling for that
-/// would waste half of it.
+/// Resizes, and where it must grow takes an eighth more: the next scans differ a little, and the usual doubling for
+/// that would waste half of it.
 template <class Value>
 void resizeTo(std::vector<Value>& values, std::size_t count) {
   if (count > values.capacity()) values.reserve(count + count / 8);
