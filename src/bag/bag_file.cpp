@@ -13,6 +13,8 @@
 #include <tf2_msgs/TFMessage.h>
 #include <unistd.h>
 
+#include "donex/bag/bag_check.h"
+
 namespace donex {
 namespace fs = std::filesystem;
 namespace {
@@ -76,6 +78,7 @@ void openBag(const fs::path& file, rosbag::Bag& bag) {
   if (!fs::exists(file)) throw DataError(name + ": does not exist");
   if (!fs::is_regular_file(file)) throw DataError(name + ": is not a file");
   if (!std::ifstream(file)) throw DataError(name + ": cannot be read");
+  checkBag(file);
   try {
     bag.open(name, rosbag::bagmode::Read);
   } catch (const rosbag::BagUnindexedException&) {

@@ -7,9 +7,10 @@
 
 namespace donex {
 
-/// Reads the records of a bag once, without its messages: every length, count and position must be sound, compressed
-/// chunks be as large as they claim. The library follows them wherever they lead, beyond its buffers and into gigabytes.
-/// A bag without an index passes: the library refuses it by itself. Throws DataError that says what is wrong, and where.
+/// Reads the records of a bag that can be read once, without its messages: every length, count and position must be
+/// sound, compressed chunks be as large as they claim. The library follows them wherever they lead, beyond its buffers
+/// and into gigabytes. A bag without an index passes: the library refuses it by itself. Throws DataError that says what
+/// is wrong, and where.
 void checkBag(const std::filesystem::path& file);
 
 }  // namespace donex

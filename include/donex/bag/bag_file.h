@@ -10,7 +10,8 @@
 
 namespace donex {
 
-/// Opens a bag for reading. Throws DataError that says what is wrong: missing, not a bag, cut off.
+/// Opens a bag for reading, once checkBag found it sound. Throws DataError that says what is wrong: missing, not a bag,
+/// cut off.
 void openBag(const std::filesystem::path& file, rosbag::Bag& bag);
 
 /// How the chunks of a bag are compressed (the first one speaks for all); not at all where there is no chunk.
