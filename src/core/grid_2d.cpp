@@ -132,6 +132,7 @@ void Grid2d::judge(Part& part, std::size_t first, const EchoBlock& block, EchoLa
 void Grid2d::takeOver(Part& part) {
   Part& all = parts_.front();
   for (std::size_t i = 0; i < part.hit_count; ++i) {
+    if (i + kAhead < part.hit_count) __builtin_prefetch(&cells_[part.hit[i + kAhead]], 1);
     const std::uint32_t slot = part.hit[i];
     HeightRange& taken = cells_[slot].taken;
     if (taken.empty()) all.hit[all.hit_count++] = slot;

@@ -140,7 +140,12 @@ void Grid3d::takeOver(Part& part) {
     const BrickBit at = layout_.locate(voxel);
     if ((bricks_[at.slot].hit & maskOf(at.bit)) == 0) in_order.push_back(voxel);
   }
-  for (const Used& touched : part.touched) {
+  for (std::size_t i = 0; i < part.touched.size(); ++i) {
+    if (i + kAhead < part.touched.size()) {
+      __builtin_prefetch(&bricks_[part.touched[i + kAhead].slot], 1);
+      __builtin_prefetch(&part.hit[part.touched[i + kAhead].slot], 1);
+    }
+    const Used& touched = part.touched[i];
     Brick& brick = bricks_[touched.slot];
     if ((brick.remembered | brick.hit) == 0) used_.push_back(touched);
     brick.hit |= part.hit[touched.slot];

@@ -64,7 +64,9 @@ void RayIndex::begin(const Placement& placement, const std::vector<Eigen::Vector
   by_echo_.resize(padded);
   bin_of_echo_.resize(padded);
   bins_of_part_.resize(parts);
-  for (std::vector<Bin>& bins : bins_of_part_) bins.assign(kBins + 1, Bin{0, -1.0F});
+  // The other parts' bins were emptied when they were sorted.
+  bins_of_part_.front().assign(kBins + 1, kEmpty);
+  for (std::vector<Bin>& bins : bins_of_part_) bins.resize(kBins + 1, kEmpty);
 }
 
 void RayIndex::add(std::size_t part, std::size_t first, const EchoBlock& block) {
@@ -106,6 +108,7 @@ void RayIndex::sortPart(std::size_t part) {
     rays_.depth[ray] = by_echo_.depth[i];
     echo_of_ray_[ray] = static_cast<std::uint32_t>(i);
   }
+  if (part != 0) std::fill_n(bins, kBins + 1, kEmpty);
 }
 
 RayIndex::Rows RayIndex::rowsOfScan() const {

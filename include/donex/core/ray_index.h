@@ -53,6 +53,7 @@ class RayIndex {
     std::uint32_t first;  ///< where its rays begin in rays_
     float farthest;       ///< largest depth [voxels]; negative where it has no ray
   };
+  static constexpr Bin kEmpty = {0, -1.0F};
   /// Heights are binned over what the scan before covered: sensors look up and down differently far.
   struct Rows {
     float low = -1.0F, per_up = 64.0F;
