@@ -178,7 +178,7 @@ double Grid2d::bytesFor(double slots, double echoes, int threads) {
   const double more_parts = threads - 1;
   const double an_echo = TakenEchoes::bytesFor(1.0) + sizeof(std::uint32_t);
   return slots * (sizeof(Cell) + more_parts * sizeof(HeightRange)) +
-         echoes * an_echo * (1.0 + (more_parts > 0.0 ? more_parts / threads : 0.0));
+         echoes * an_echo * (1.0 + more_parts / threads);
 }
 
 std::size_t Grid2d::memoryBytes() const {

@@ -11,7 +11,10 @@ void SightHistory::add(const Scan& scan, const std::vector<std::uint8_t>& is_ech
   if (too_soon) return;
   forget(scan.stamp - length_);
   Kept next{scan.stamp, scan.odomFromSensor().inverse(), {}, {}};
-  if (!spares_.empty()) next.image = std::move(spares_.back()), spares_.pop_back();
+  if (!spares_.empty()) {
+    next.image = std::move(spares_.back());
+    spares_.pop_back();
+  }
   if (!kept_.empty()) kept_.back().image.handOn(next.image);
   next.image.build(scan.echoes, is_echo, reading_);
   kept_.push_back(std::move(next));

@@ -11,7 +11,10 @@ void TraceHistory::begin(double stamp) {
   // A thing that was not seen in the scan before `first` may have left its last trace the longest gap earlier.
   if (first != sheets_.begin()) forget(std::prev(first)->stamp - longest_gap_);
   Sheet next;
-  if (!spares_.empty()) next = std::move(spares_.back()), spares_.pop_back();
+  if (!spares_.empty()) {
+    next = std::move(spares_.back());
+    spares_.pop_back();
+  }
   next.stamp = stamp;
   next.entries.clear();
   next.points.clear();

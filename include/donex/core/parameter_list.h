@@ -34,7 +34,8 @@ void visitClassifier(Config& config, Visitor& visit) {
                       true},
         config.compensation);
   visit(ParameterInfo{"memory_limit", "MB",
-                      "largest grid that is accepted; region and voxel size decide what a grid needs", true},
+                      "most that the grid may take with scans of 120,000 echoes; region and voxel size decide what it needs",
+                      true},
         config.memory_limit, 10, 100000);
   visit(ParameterInfo{"threads", "", "threads that the paper's grids may use; labels do not depend on it", true},
         config.threads, 1, 64);
