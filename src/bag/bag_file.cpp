@@ -2,8 +2,6 @@
 
 #include <cstdint>
 #include <fstream>
-#include <map>
-#include <optional>
 #include <set>
 #include <stdexcept>
 
@@ -13,55 +11,30 @@
 #include <tf2_msgs/TFMessage.h>
 #include <unistd.h>
 
+#include "bag_record.h"
 #include "donex/bag/bag_check.h"
 
 namespace donex {
 namespace fs = std::filesystem;
 namespace {
 
-using Fields = std::map<std::string, std::string>;
-
-constexpr char kChunkRecord = 5;
-constexpr char kBagHeaderRecord = 3;
-constexpr std::uint32_t kMostHeaderBytes = 1U << 20U;  // real ones are below 200: more is rubbish
-
-std::optional<std::uint32_t> readLength(std::istream& stream) {
-  std::uint32_t length = 0;
-  if (!stream.read(reinterpret_cast<char*>(&length), sizeof(length))) return std::nullopt;
-  return length;
-}
-
-/// name=value pairs, each after its length.
-Fields parseFields(const std::string& header) {
-  Fields fields;
-  for (std::size_t at = 0; at + sizeof(std::uint32_t) <= header.size();) {
-    std::uint32_t length = 0;
-    header.copy(reinterpret_cast<char*>(&length), sizeof(length), at);
-    const std::string field = header.substr(at + sizeof(length), length);
-    const std::size_t equals = field.find('=');
-    if (equals != std::string::npos) fields[field.substr(0, equals)] = field.substr(equals + 1);
-    at += sizeof(length) + length;
+/// Of a bag that checkBag found sound.
+void openChecked(const fs::path& file, rosbag::Bag& bag) {
+  const std::string name = file.string();
+  try {
+    bag.open(name, rosbag::bagmode::Read);
+  } catch (const rosbag::BagUnindexedException&) {
+    throw DataError(name + ": has no index, its recording was cut off ('rosbag reindex' may save it)");
+  } catch (const std::exception& error) {
+    throw DataError(fmt::format("{}: is not a bag or is cut off ({})", name, error.what()));
   }
-  return fields;
-}
-
-/// The header of the next record, whose data is skipped.
-std::optional<Fields> readRecord(std::istream& stream) {
-  const auto header_length = readLength(stream);
-  if (!header_length || *header_length > kMostHeaderBytes) return std::nullopt;
-  std::string header(*header_length, '\0');
-  if (!stream.read(header.data(), static_cast<std::streamsize>(header.size()))) return std::nullopt;
-  const auto data_length = readLength(stream);
-  if (!data_length) return std::nullopt;
-  stream.seekg(*data_length, std::ios::cur);
-  return parseFields(header);
 }
 
 /// The library numbers a new connection by the count of those that are there: where numbers were left out, it
 /// would take one that is in use, and mix two topics.
 void requireFreeConnection(const fs::path& file) {
   rosbag::Bag bag;
-  openBag(file, bag);
+  openChecked(file, bag);
   rosbag::View view(bag);
   std::set<std::uint32_t> ids;
   for (const rosbag::ConnectionInfo* connection : view.getConnections()) ids.insert(connection->id);
@@ -79,26 +52,23 @@ void openBag(const fs::path& file, rosbag::Bag& bag) {
   if (!fs::is_regular_file(file)) throw DataError(name + ": is not a file");
   if (!std::ifstream(file)) throw DataError(name + ": cannot be read");
   checkBag(file);
-  try {
-    bag.open(name, rosbag::bagmode::Read);
-  } catch (const rosbag::BagUnindexedException&) {
-    throw DataError(name + ": has no index, its recording was cut off ('rosbag reindex' may save it)");
-  } catch (const std::exception& error) {
-    throw DataError(fmt::format("{}: is not a bag or is cut off ({})", name, error.what()));
-  }
+  openChecked(file, bag);
 }
 
 rosbag::CompressionType compressionOf(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
+  const auto read = [&](std::uint64_t at, char* to, std::size_t count) {
+    stream.seekg(static_cast<std::streamoff>(at)).read(to, static_cast<std::streamsize>(count));
+  };
+  const bag::RecordSource source{fs::file_size(file), read};
   std::string version;
   std::getline(stream, version);
-  while (const auto fields = readRecord(stream)) {
-    const auto op = fields->find("op");
-    if (op == fields->end() || op->second.size() != 1) break;
-    const auto compression = fields->find("compression");
-    const bool is_chunk = op->second[0] == kChunkRecord && compression != fields->end();
-    if (is_chunk) return parseCompression(compression->second);
-    if (op->second[0] != kBagHeaderRecord) break;  // the chunks come first
+  // The chunks come first.
+  for (auto record = bag::readRecord(source, version.size() + 1); record;
+       record = bag::readRecord(source, record->end())) {
+    const bool is_chunk = record->kind() == bag::kChunk;
+    if (is_chunk) return parseCompression(record->text("compression"));
+    if (record->kind() != bag::kBagHeader) break;
   }
   return rosbag::compression::Uncompressed;
 }

@@ -31,7 +31,7 @@ class BagWriter {
   /// A new bag. Throws DataError when the file cannot be created.
   BagWriter(std::filesystem::path file, rosbag::CompressionType compression);
 
-  /// A copy of the bag `original`, byte for byte, to which messages can be added; they are compressed as its own.
+  /// A copy of the bag `original`, which openBag opens, byte for byte; messages can be added, compressed as its own.
   /// Throws DataError, also for the rare bag that the rosbag library cannot append to soundly.
   BagWriter(std::filesystem::path file, const std::filesystem::path& original);
 
