@@ -10,7 +10,8 @@
 
 namespace donex {
 
-/// Takes a count from the stream. Throws StreamOverrunException when so many elements of at least `bytes` are not there.
+/// Takes a count from the stream. Throws StreamOverrunException when so many elements of at least `bytes` are not
+/// there.
 inline std::uint32_t takeCount(ros::serialization::IStream& stream, std::uint32_t bytes) {
   std::uint32_t count = 0;
   stream.next(count);

@@ -22,6 +22,7 @@ int rowOf(double elevation) {
 int columnOf(double azimuth) {
   return std::clamp(static_cast<int>(std::floor((azimuth + kPi) / kBin)), 0, kColumns - 1);
 }
+std::uint32_t binOf(int row, int column) { return static_cast<std::uint32_t>(row * kColumns + column); }
 double elevationOf(const Eigen::Vector3d& direction) { return std::asin(std::clamp(direction.z(), -1.0, 1.0)); }
 double azimuthOf(const Eigen::Vector3d& direction) { return std::atan2(direction.y(), direction.x()); }
 
@@ -52,8 +53,7 @@ void PointShadows::sortByDirection(const std::vector<Eigen::Vector3f>& echoes,
     if (is_echo[i] == 0) continue;
     ranges_[i] = echoes[i].cast<double>().norm();
     directions_[i] = echoes[i].cast<double>() / ranges_[i];
-    bin_of_[i] =
-        static_cast<std::uint32_t>(rowOf(elevationOf(directions_[i])) * kColumns + columnOf(azimuthOf(directions_[i])));
+    bin_of_[i] = binOf(rowOf(elevationOf(directions_[i])), columnOf(azimuthOf(directions_[i])));
     ++first_[bin_of_[i]];
     by_range_.push_back(i);
   }
@@ -73,7 +73,7 @@ void PointShadows::search(std::uint32_t echo, double angle) {
   const int last = std::min(around, kColumns / 2 - 1);  // no column twice
   for (int row = rowOf(elevation - angle - kBin); row <= rowOf(elevation + angle + kBin); ++row) {
     for (int step = -around; step <= last; ++step) {
-      const auto bin = static_cast<std::size_t>(row * kColumns + (column + step + kColumns) % kColumns);
+      const std::uint32_t bin = binOf(row, (column + step + kColumns) % kColumns);
       for (std::uint32_t at = first_[bin]; at < first_[bin + 1]; ++at) {
         if (directions_[sorted_[at]].dot(center) >= least_cosine) found_.push_back(sorted_[at]);
       }

@@ -57,7 +57,7 @@ int RayIndex::rowOf(float up) const {
 }
 
 inline const RayIndex::Bin* RayIndex::stripOf(int side, int column) const {
-  return bins_of_part_.front().data() + (side * kAcross + column) * kUp;
+  return bins_of_part_.front().data() + static_cast<std::ptrdiff_t>(side * kAcross + column) * kUp;
 }
 
 /// Margins and bins, from the bounds.
@@ -109,8 +109,8 @@ inline RayIndex::Shadow RayIndex::shadowOf(const BrickAhead& brick, const Index3
   shadow.far = shadow.near.array() + static_cast<float>(edge);
   shadow.near_depth = shadow.near.x() * (1.0F - kDepthMargin);
   shadow.is_ahead = true;
-  const float per_near = brick.per_depth[static_cast<std::size_t>(low.x())];
-  const float per_far = brick.per_depth[static_cast<std::size_t>(low.x() + edge)];
+  const auto near_face = static_cast<std::size_t>(low.x()), far_face = near_face + static_cast<std::size_t>(edge);
+  const float per_near = brick.per_depth[near_face], per_far = brick.per_depth[far_face];
   shadow.across_low = shadow.near.y() * (shadow.near.y() < 0.0F ? per_near : per_far);
   shadow.across_high = shadow.far.y() * (shadow.far.y() > 0.0F ? per_near : per_far);
   shadow.up_low = shadow.near.z() * (shadow.near.z() < 0.0F ? per_near : per_far);

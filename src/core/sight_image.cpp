@@ -47,9 +47,14 @@ inline Projected project(float x, float y, float z) {
           std::sqrt(horizontal * horizontal + z * z)};
 }
 
+/// Number of a pixel in an image of so many rows.
+inline std::size_t pixelOf(int column, int row, int rows) {
+  return static_cast<std::size_t>(column) * static_cast<std::size_t>(rows) + static_cast<std::size_t>(row);
+}
+
 DONEX_WIDE_LOOPS void projectAll(const Eigen::Vector3f* echoes, const std::uint8_t* is_echo, std::size_t count,
                                  std::int32_t* columns, std::int32_t* rows, float* ranges) {
-  const float* xyz = reinterpret_cast<const float*>(echoes);
+  const auto* xyz = reinterpret_cast<const float*>(echoes);
   for (std::size_t i = 0; i < count; ++i) {
     const Projected pixel = project(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]);
     const bool valid = static_cast<int>(pixel.valid) & static_cast<int>(is_echo[i] != 0);
@@ -84,11 +89,11 @@ void SightImage::collect(const std::vector<Eigen::Vector3f>& echoes, const std::
   first_row_ = highest < 0 ? 0 : lowest;
   rows_ = highest < 0 ? 0 : highest - lowest + 1;
   nearest_.reserve(kPixels);
-  nearest_.assign(static_cast<std::size_t>(kColumns * rows_), 0);
+  nearest_.assign(pixelOf(kColumns, 0, rows_), 0);
   for (std::size_t i = 0; i < count; ++i) {
     if (pixels_.rows[i] < 0) continue;
     const auto range = static_cast<Range>(pixels_.ranges[i]);
-    Range& nearest = nearest_[static_cast<std::size_t>(pixels_.columns[i] * rows_ + pixels_.rows[i] - first_row_)];
+    Range& nearest = nearest_[pixelOf(pixels_.columns[i], pixels_.rows[i] - first_row_, rows_)];
     if (nearest == 0 || range < nearest) nearest = range;
   }
 }
@@ -159,7 +164,7 @@ SightImage::Sight SightImage::read(const std::vector<Range>& image, const Eigen:
   if (!pixel.valid) return Sight::kUnknown;
   const int row = pixel.row - first_row_;
   if (row < 0 || row >= rows_ || image.empty()) return Sight::kUnknown;
-  const Range nearest = image[static_cast<std::size_t>(pixel.column * rows_ + row)];
+  const Range nearest = image[pixelOf(pixel.column, row, rows_)];
   if (nearest == 0) return Sight::kUnknown;
   const float beyond = static_cast<float>(nearest) * kRangeStep - pixel.range;
   if (beyond > margin) return Sight::kFree;

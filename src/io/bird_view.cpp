@@ -10,8 +10,9 @@ constexpr std::uint32_t kNoCell = 0xFFFFFFFFU;
 
 /// Number of the cell an echo falls into.
 std::uint32_t cellOf(const Eigen::Vector3f& echo) {
-  const double column = std::floor(static_cast<double>(echo.x()) / BirdView::kCell) + BirdView::kWidth / 2;
-  const double row = std::floor(static_cast<double>(echo.y()) / BirdView::kCell) + BirdView::kWidth / 2;
+  constexpr int kMiddle = BirdView::kWidth / 2;
+  const double column = std::floor(static_cast<double>(echo.x()) / BirdView::kCell) + kMiddle;
+  const double row = std::floor(static_cast<double>(echo.y()) / BirdView::kCell) + kMiddle;
   const bool is_inside = column >= 0 && column < BirdView::kWidth && row >= 0 && row < BirdView::kWidth;  // not for NaN
   return is_inside ? static_cast<std::uint32_t>(row) * BirdView::kWidth + static_cast<std::uint32_t>(column) : kNoCell;
 }
@@ -30,6 +31,7 @@ BirdView makeBirdView(std::size_t scan, const std::vector<Eigen::Vector3f>& echo
   BirdView view;
   view.scan = scan;
   std::vector<std::uint32_t> occupied;
+  occupied.reserve(echoes.size());
   for (const Eigen::Vector3f& echo : echoes) occupied.push_back(cellOf(echo));
   std::sort(occupied.begin(), occupied.end());
   occupied.erase(std::unique(occupied.begin(), occupied.end()), occupied.end());

@@ -28,16 +28,17 @@ std::optional<Labels> readPrediction(ScoredPrediction& prediction, std::size_t i
 void scoreScan(const SequenceReader& sequence, std::size_t index, const ObjectSpeeds& speeds, const Labels& truth,
                std::vector<ScoredPrediction>& predictions) {
   const std::vector<Eigen::Vector3f> echoes = sequence.scan(index).echoes;
-  const auto speedOf = [&](std::uint32_t instance) { return speeds.at(instance, sequence.stamp(index)); };
+  const auto speed_of = [&](std::uint32_t instance) { return speeds.at(instance, sequence.stamp(index)); };
   for (ScoredPrediction& prediction : predictions) {
     const auto labels = readPrediction(prediction, index, echoes.size());
-    if (labels) prediction.evaluation.add(index, echoes, truth, *labels, speedOf);
+    if (labels) prediction.evaluation.add(index, echoes, truth, *labels, speed_of);
   }
 }
 
 BirdView viewOf(const SequenceReader& sequence, std::size_t index, const std::vector<ScoredPrediction>& predictions) {
   const std::vector<Eigen::Vector3f> echoes = sequence.scan(index).echoes;
   std::vector<Labels> labels;
+  labels.reserve(predictions.size());
   for (ScoredPrediction prediction : predictions) {  // a copy: its faults have been told
     labels.push_back(readPrediction(prediction, index, echoes.size()).value_or(Labels()));
   }

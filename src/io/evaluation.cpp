@@ -36,7 +36,7 @@ void Evaluation::add(std::size_t scan_index, const std::vector<Eigen::Vector3f>&
 
 void Evaluation::add(std::size_t scan_index, const std::vector<Eigen::Vector3f>& echoes,
                      const std::vector<std::uint32_t>& truth, const std::vector<std::uint32_t>& prediction,
-                     const SpeedOf& speedOf) {
+                     const SpeedOf& speed_of) {
   const bool fit = truth.size() == echoes.size() && prediction.size() == echoes.size();
   if (!fit) {
     throw std::invalid_argument(std::to_string(echoes.size()) + " echoes, " + std::to_string(truth.size()) +
@@ -53,7 +53,7 @@ void Evaluation::add(std::size_t scan_index, const std::vector<Eigen::Vector3f>&
     const bool is_object = isMoving(truth[i]) && instanceOfLabel(truth[i]) != 0;
     if (is_object) instances[truth[i]].add(true, isMoving(prediction[i]));
   }
-  for (const auto& [label, counts] : instances) addObject(label, counts, speedOf(instanceOfLabel(label)));
+  for (const auto& [label, counts] : instances) addObject(label, counts, speed_of(instanceOfLabel(label)));
 }
 
 void Evaluation::addObject(std::uint32_t truth, const Counts& counts, const std::optional<double>& speed) {

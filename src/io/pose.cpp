@@ -13,7 +13,7 @@ constexpr double kRounding = 1e-3;  // of a rotation matrix: files hold as few a
 /// bits of its largest coefficient away, the nearest that normalising leaves as it is.
 Eigen::Quaterniond stablyNormalised(const Eigen::Quaterniond& q) {
   constexpr int kMostSteps = 32;
-  const Eigen::Quaterniond unit = q.normalized();
+  Eigen::Quaterniond unit = q.normalized();
   Eigen::Index largest = 0;
   const double size = unit.coeffs().cwiseAbs().maxCoeff(&largest);
   const double step = std::nextafter(size, 2.0) - size;

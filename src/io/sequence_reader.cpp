@@ -205,7 +205,7 @@ SequenceScan SequenceReader::scan(std::size_t index) const {
   scan.echoes.reserve(rows.size());
   scan.intensities.reserve(rows.size());
   for (const Eigen::Vector4f& row : rows) {
-    scan.echoes.push_back(row.head<3>());
+    scan.echoes.emplace_back(row.head<3>());
     scan.intensities.push_back(row.w());
   }
   return scan;

@@ -4,7 +4,7 @@
 #include <regex>
 #include <sstream>
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "donex/core/parameter_list.h"
 
@@ -39,12 +39,6 @@ std::string shown(const YAML::Node& value) {
   if (value.IsMap()) return "a map";
   if (value.IsSequence()) return "a list";
   return isQuoted(value) ? fmt::format("\"{}\"", value.Scalar()) : value.Scalar();
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
 }
 
 /// Takes from the settings what a parameter asks for, strictly by its type.
@@ -88,7 +82,7 @@ class SettingsVisitor {
         return;
       }
     }
-    refuse(info, "must be one of " + joined(names));
+    refuse(info, fmt::format("must be one of {}", fmt::join(names, ", ")));
   }
 
  private:

@@ -44,7 +44,7 @@ Config paperOf(Method method) {
 }
 
 std::vector<Contender> allContenders() {
-  const char* const kPaper = "Stralau & Fu, DONEX";
+  constexpr const char* kPaper = "Stralau & Fu, DONEX";
   return {
       {{"donex_3d", "3D grid with evidence and objects: this package's default", kPaper, true},
        defaultOf(Method::kDonex3d)},

@@ -4,8 +4,11 @@
 #include <functional>
 #include <list>
 #include <sstream>
+#include <stdexcept>
 #include <type_traits>
 #include <utility>
+
+#include <fmt/ranges.h>
 
 #include "donex/core/parameter_list.h"
 
@@ -42,13 +45,6 @@ const std::string& nameOf(Enum value) {
 
 std::string quoted(const std::string& text) { return '"' + text + '"'; }
 
-template <class Enum>
-std::string alternatives(Enum value) {
-  std::string text;
-  for (const std::string& name : namesOf(value)) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 /// Text by group, the groups in the order in which they first appear.
 class GroupedText {
  public:
@@ -83,7 +79,7 @@ struct YamlWriter {
   void operator()(const ParameterInfo& info, const std::string& value) { write(info, &value, quoted(value), "a name"); }
   template <class Enum, class = std::enable_if_t<std::is_enum_v<Enum>>>
   void operator()(const ParameterInfo& info, const Enum& value) {
-    write(info, &value, nameOf(value), alternatives(value));
+    write(info, &value, nameOf(value), fmt::format("{}", fmt::join(namesOf(value), ", ")));
   }
 
   void write(const ParameterInfo& info, const void* member, const std::string& value, const std::string& range) {
@@ -94,8 +90,8 @@ struct YamlWriter {
 };
 
 /// The generator refuses descriptions with quotes in them.
-std::string description(std::string text) {
-  text.erase(std::remove(text.begin(), text.end(), '\''), text.end());
+std::string description(const std::string& text) {
+  if (text.find('\'') != std::string::npos) throw std::logic_error("an apostrophe in a description: " + text);
   return quoted(text);
 }
 

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include <dynamic_reconfigure/config_tools.h>
+#include <fmt/ranges.h>
 
 #include "donex/core/parameter_list.h"
 #include "donex/ros/parameter_files.h"
@@ -32,9 +33,7 @@ const char* typeName(const XmlRpcValue& value) {
 
 template <class Enum>
 std::string choices(Enum value) {
-  std::string text;
-  for (const std::string& name : namesOf(value)) text += (text.empty() ? "" : ", ") + name;
-  return text;
+  return fmt::format("{}", fmt::join(namesOf(value), ", "));
 }
 
 template <class Enum>
@@ -210,10 +209,6 @@ Faults applyMessage(const dynamic_reconfigure::Config& message, Config& config) 
 
 bool sameDetection(const Config& a, const Config& b) { return detectionValues(a) == detectionValues(b); }
 
-std::string joined(const Faults& faults) {
-  std::string text;
-  for (const std::string& fault : faults) text += (text.empty() ? "" : "; ") + fault;
-  return text;
-}
+std::string joined(const Faults& faults) { return fmt::format("{}", fmt::join(faults, "; ")); }
 
 }  // namespace donex

@@ -34,11 +34,7 @@ void Pipeline::addCloud(const sensor_msgs::PointCloud2ConstPtr& cloud, double no
   WaitingCloud waiting{cloud, std::get<CloudLayout>(verdict), counts_.clouds_in, now, std::chrono::steady_clock::now()};
   const bool is_old = last_labeled_ && cloud->header.stamp < *last_labeled_;
   if (is_old) return suspect(std::move(waiting));
-  if (suspect_cloud_) {
-    drop(DropReason::kOutOfOrder,
-         cloudOf(suspect_cloud_->cloud->header.stamp) + " came after a later one was labelled");
-    suspect_cloud_.reset();
-  }
+  dropSuspect();
   place(std::move(waiting));
 }
 
@@ -95,6 +91,12 @@ void Pipeline::suspect(const nav_msgs::Odometry& odometry) {
   }
   startAnew("odometry went back to " + std::to_string(odometry.header.stamp.toSec()) + " s");
   use(odometry);
+}
+
+void Pipeline::dropSuspect() {
+  if (!suspect_cloud_) return;
+  drop(DropReason::kOutOfOrder, cloudOf(suspect_cloud_->cloud->header.stamp) + " came after a later one was labelled");
+  suspect_cloud_.reset();
 }
 
 void Pipeline::startAnew(const std::string& why) {
@@ -203,9 +205,7 @@ void Pipeline::moveToOrigin() {
 void Pipeline::finish() {
   while (step(std::numeric_limits<double>::infinity())) {
   }
-  if (!suspect_cloud_) return;
-  drop(DropReason::kOutOfOrder, cloudOf(suspect_cloud_->cloud->header.stamp) + " came after a later one was labelled");
-  suspect_cloud_.reset();
+  dropSuspect();
 }
 
 void Pipeline::reset() { detector_->reset(); }

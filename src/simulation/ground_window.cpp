@@ -33,9 +33,9 @@ void GroundWindow::sampleBlock(int first_column, int first_row, int columns, int
 }
 
 void GroundWindow::moveTo(const Eigen::Vector2d& center) {
-  const auto firstFor = [](double coordinate) { return cellOf(coordinate / kMoveCells) * kMoveCells - kCells / 2; };
-  const int column = firstFor(center.x());
-  const int row = firstFor(center.y());
+  const auto first_for = [](double coordinate) { return cellOf(coordinate / kMoveCells) * kMoveCells - kCells / 2; };
+  const int column = first_for(center.x());
+  const int row = first_for(center.y());
   const int right = column - first_column_;
   const int up = row - first_row_;
   const bool far = std::abs(right) >= kCells || std::abs(up) >= kCells;
@@ -80,14 +80,14 @@ Eigen::Vector3f GroundWindow::normal(double x, double y) const {
 
 /// `origin` and `direction` level in cells, upright in metres. The parameter, or kMiss.
 float GroundWindow::enter(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float from) const {
-  const auto aboveGround = [&](float r) {
+  const auto above_ground = [&](float r) {
     const Eigen::Vector3f at = origin + r * direction;
     return at.z() - heightAtCell(at.x(), at.y());
   };
   /// Between a place above and a place below: two steps of false position.
   const auto crossing = [&](float r_above, float above, float r_below, float below) {
     const float guess = r_above + (r_below - r_above) * above / (above - below);
-    const float there = aboveGround(guess);
+    const float there = above_ground(guess);
     if (there > 0.0f) return guess + (r_below - guess) * there / (there - below);
     return r_above + (guess - r_above) * above / (above - there);
   };
@@ -95,7 +95,7 @@ float GroundWindow::enter(const Eigen::Vector3f& origin, const Eigen::Vector3f& 
   float before = 0.0f;
   float before_r = from;
   for (float r = from; r < static_cast<float>(kReach);) {
-    const float above = aboveGround(r);
+    const float above = above_ground(r);
     if (above <= 0.0f) return before > 0.0f ? crossing(before_r, before, r, above) : r;
     before_r = r;
     before = above;

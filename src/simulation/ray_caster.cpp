@@ -80,9 +80,9 @@ void RayCaster::distribute(const Extent& extent, const Stretch& stretch) {
   const int first_open = sectorOf(stretch.first_column);
   const int last_open = sectorOf(stretch.end_column - 1);
   const float columns_per_radian = static_cast<float>(model_.columns()) / (2.0f * kHalfTurn);
-  const auto columnAt = [&](float azimuth) { return (kHalfTurn - azimuth) * columns_per_radian - 0.5f; };
-  int first = sectorOf(static_cast<int>(std::floor(columnAt(extent.azimuth + extent.half_angle))));
-  int last = sectorOf(static_cast<int>(std::ceil(columnAt(extent.azimuth - extent.half_angle))));
+  const auto column_at = [&](float azimuth) { return (kHalfTurn - azimuth) * columns_per_radian - 0.5f; };
+  int first = sectorOf(static_cast<int>(std::floor(column_at(extent.azimuth + extent.half_angle))));
+  int last = sectorOf(static_cast<int>(std::ceil(column_at(extent.azimuth - extent.half_angle))));
   if (last - first >= count) {
     first = 0;
     last = count - 1;

@@ -159,14 +159,14 @@ void SceneBuilder::picketFence(const Path& path, double from, double to, double 
 void SceneBuilder::bridge(const Path& path, double s, double half_span, double clearance, double width) {
   constexpr double kStrip = 4.0;  // [m]
   const double base = scene_.ground.height(path.at(s).position);
-  const auto aboveGround = [&](const PathPoint& at) { return base + clearance - scene_.ground.height(at.position); };
+  const auto above_ground = [&](const PathPoint& at) { return base + clearance - scene_.ground.height(at.position); };
   for (double across = -half_span; across <= half_span; across += kStrip) {
     const PathPoint at = path.at(s, across);
-    block(at, {width, kStrip, 0.9}, 52, 0.35f, aboveGround(at));
+    block(at, {width, kStrip, 0.9}, 52, 0.35f, above_ground(at));
     for (const double edge : {-0.5, 0.5}) {
       PathPoint parapet = at;
       parapet.position += edge * width * at.forward();
-      block(parapet, {0.2, kStrip, 1.0}, 52, 0.35f, aboveGround(at) + 0.9);
+      block(parapet, {0.2, kStrip, 1.0}, 52, 0.35f, above_ground(at) + 0.9);
     }
   }
   for (const double side : {-1.0, 1.0}) {

@@ -88,16 +88,16 @@ void Sweep::gatherMovers() {
 
 Stretch Sweep::stretchOf(int first_column, int end_column) const {
   const double per_column = options_.duration / model_.columns();
-  const auto timeOf = [&](int column) { return options_.distortion ? per_column * column - options_.duration : 0.0; };
-  const double middle = 0.5 * (timeOf(first_column) + timeOf(end_column));
+  const auto time_of = [&](int column) { return options_.distortion ? per_column * column - options_.duration : 0.0; };
+  const double middle = 0.5 * (time_of(first_column) + time_of(end_column));
   Eigen::Isometry3d pose = sensorAt(middle);
   Stretch stretch{first_column, end_column, {}, static_cast<float>(middle), 0.0f, 0.0f, 0.0f};
   for (const int end : {first_column, end_column}) {
-    const Eigen::Isometry3d moved = pose.inverse() * sensorAt(timeOf(end));
+    const Eigen::Isometry3d moved = pose.inverse() * sensorAt(time_of(end));
     stretch.movement = std::max(stretch.movement, static_cast<float>(1.5 * moved.translation().norm()));
     stretch.rotation = std::max(stretch.rotation, static_cast<float>(1.5 * Eigen::AngleAxisd(moved.linear()).angle()));
   }
-  stretch.half_duration = static_cast<float>(middle - timeOf(first_column));
+  stretch.half_duration = static_cast<float>(middle - time_of(first_column));
   pose.translation() -= anchor_;
   stretch.sensor = pose.cast<float>();
   return stretch;

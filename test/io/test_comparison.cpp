@@ -64,10 +64,10 @@ TEST(Objects, AreFoundByHalfOfTheirEchoes) {
   put(20, 10, 4, 20, 5.0F);
   put(20, 252, 5, 20, 60.0F);
   Evaluation evaluation;
-  const auto speedOf = [](std::uint32_t instance) {
+  const auto speed_of = [](std::uint32_t instance) {
     return instance == 1 ? std::optional<double>(5.0) : instance == 2 ? std::optional<double>(0.5) : std::nullopt;
   };
-  evaluation.add(5, echoes, truth, prediction, speedOf);
+  evaluation.add(5, echoes, truth, prediction, speed_of);
   EXPECT_EQ(evaluation.objects().all, 2U);
   EXPECT_EQ(evaluation.objects().found, 1U);
   EXPECT_DOUBLE_EQ(evaluation.objects().recall(), 0.5);

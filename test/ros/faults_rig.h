@@ -35,8 +35,8 @@ class FaultsTest : public ManagerTest {
       return std::abs(ros::Time::now().toSec() - now) < 1e-6;
     }));
   }
-  /// The vehicle's next scan. A vehicle has a rhythm of its own, here six times as fast as a real one: nothing is waited
-  /// for. (The classifier looks after waiting clouds by the wall clock, which the simulated one must not outrun.)
+  /// The vehicle's next scan. A vehicle has a rhythm of its own, here six times as fast as a real one: nothing waits
+  /// for it. (The classifier looks after waiting clouds by the wall clock, which the simulated one must not outrun.)
   void advance() {
     setClock(now_ + kPeriod);
     rhythm_.sleep();

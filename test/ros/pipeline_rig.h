@@ -39,12 +39,13 @@ inline geometry_msgs::TransformStamped transformAt(double stamp, const std::stri
 /// A radius that the lines of sight to ring() pass [m].
 constexpr float kInside = 5.13F;
 
-/// Echoes on a ring around the sensor, `radius` [m]. A narrower ring lies on the lines of sight to the echoes of a wider
-/// one: where the wider one was seen for a while, the narrower one is new.
+/// Echoes on a ring around the sensor, `radius` [m]. A narrower ring lies on the lines of sight to the echoes of a
+/// wider one: where the wider one was seen for a while, the narrower one is new.
 inline std::vector<Eigen::Vector3f> ring(std::size_t echoes = 36, float radius = 10.0F) {
   std::vector<Eigen::Vector3f> all;
   for (std::size_t i = 0; i < echoes; ++i) {
-    const float angle = 0.03F + 6.2831853F * static_cast<float>(i) / static_cast<float>(echoes);  // on no voxel's border
+    // A little turned: no echo lies on a voxel's border.
+    const float angle = 0.03F + 6.2831853F * static_cast<float>(i) / static_cast<float>(echoes);
     all.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0.05F * radius);
   }
   return all;

@@ -1,9 +1,8 @@
 // The nodelet in a manager, with everything that happens to it while data flows.
+#include <donex/MovingObjects.h>
 #include <dynamic_reconfigure/Reconfigure.h>
 #include <std_srvs/Trigger.h>
 #include <visualization_msgs/MarkerArray.h>
-
-#include <donex/MovingObjects.h>
 
 #include "ros/manager_rig.h"
 
@@ -52,8 +51,8 @@ class Manager : public ManagerTest {
   }
   /// The paper's rule alone: whatever is new is dynamic at once, also a single echo.
   void usePapersRule() {
-    for (const auto* step : {"free_evidence", "careful_sight", "birth_age", "neighbourhood", "ground", "objects",
-                             "object_motion"})
+    for (const auto* step :
+         {"free_evidence", "careful_sight", "birth_age", "neighbourhood", "ground", "objects", "object_motion"})
       ros::param::set(nodeName() + "/" + step, false);
   }
   /// Where the lines of sight to the usual ring have been: new, unless the grid is.
@@ -255,7 +254,9 @@ TEST_F(Manager, markersComeAndGo) {
 TEST_F(Manager, objectsAreToldScanByScan) {
   load();
   std::vector<MovingObjectsConstPtr> told;
-  const boost::function<void(const MovingObjectsConstPtr&)> take = [&](const auto& objects) { told.push_back(objects); };
+  const boost::function<void(const MovingObjectsConstPtr&)> take = [&](const auto& objects) {
+    told.push_back(objects);
+  };
   auto subscriber = nh_.subscribe<MovingObjects>("donex/objects", 5, take);
   ASSERT_TRUE(waitFor([&] { return subscriber.getNumPublishers() == 1; }));
   send(100.0);

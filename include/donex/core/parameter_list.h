@@ -16,7 +16,7 @@ struct ParameterInfo {
 template <class Visitor>
 void visitClassifier(Config& config, Visitor& visit) {
   visit(ParameterInfo{"method", "",
-                      "classifier: DONEX, the paper's 3D rule with a z-buffer for its see-through, or a system it is "
+                      "classifier: DONEX, the paper in 3D with a z-buffer for its see-through, or a system it is "
                       "compared with (peopleremover judges whole drives only, never live)",
                       true},
         config.method);
@@ -29,15 +29,16 @@ void visitClassifier(Config& config, Visitor& visit) {
   visit(ParameterInfo{"z_min", "m", "region of interest, vehicle frame, bottom", true}, r.z_min, -100.0, 100.0);
   visit(ParameterInfo{"z_max", "m", "region of interest, vehicle frame, top", true}, r.z_max, -100.0, 100.0);
   visit(ParameterInfo{"compensation", "",
-                      "voxel shift of the paper's rule: scroll the grid in the odometry frame's axes, or resample its "
+                      "voxel shift of the paper: scroll the grid along the axes of the odometry frame, or resample its "
                       "contents into the vehicle frame; with evidence the grid always scrolls",
                       true},
         config.compensation);
   visit(ParameterInfo{"memory_limit", "MB",
-                      "most that the grid may take with scans of 120,000 echoes; region and voxel size decide what it needs",
+                      "most that the grid may take with scans of 120,000 echoes; what it needs follows from region "
+                      "and voxel size",
                       true},
         config.memory_limit, 10, 100000);
-  visit(ParameterInfo{"threads", "", "threads that the paper's grids may use; labels do not depend on it", true},
+  visit(ParameterInfo{"threads", "", "threads that the grids of the paper may use; labels do not depend on it", true},
         config.threads, 1, 64);
 }
 
@@ -46,8 +47,8 @@ void visitEvidence(EvidenceConfig& e, Visitor& visit) {
   visit(ParameterInfo{"free_evidence", "", "a place counts as new only where earlier scans saw it free", true},
         e.free_evidence);
   visit(ParameterInfo{"free_scans", "scans", "scans that must have seen a place free", true}, e.free_scans, 1, 20);
-  visit(ParameterInfo{"history_length", "s", "how long a scan's lines of sight are remembered", true}, e.history_length,
-        0.1, 10.0);
+  visit(ParameterInfo{"history_length", "s", "how long the lines of sight of a scan are remembered", true},
+        e.history_length, 0.1, 10.0);
   visit(ParameterInfo{"sight_margin", "m", "how far behind a place a line of sight must end to see it free", true},
         e.sight_margin, 0.0, 5.0);
   visit(ParameterInfo{"careful_sight", "",
@@ -137,7 +138,7 @@ void visitNode(NodeConfig& n, Visitor& visit) {
   visit(ParameterInfo{"markers", "", "publish ~markers at all", true}, n.markers);
   visit(ParameterInfo{"marker_cells", "", "markers of dynamic cells", true}, n.marker_cells);
   visit(ParameterInfo{"marker_objects", "", "markers of objects and their velocities", true}, n.marker_objects);
-  visit(ParameterInfo{"marker_grid", "", "marker of the grid's outline", true}, n.marker_grid);
+  visit(ParameterInfo{"marker_grid", "", "marker of the outline of the grid", true}, n.marker_grid);
 }
 
 /// Shows `visit` every parameter, in the order of the documentation, as one of

@@ -98,6 +98,7 @@ class Pipeline {
   void suspect(WaitingCloud cloud);
   void suspect(const nav_msgs::Odometry& odometry);
   void use(const nav_msgs::Odometry& odometry);
+  void dropSuspect();
   void startAnew(const std::string& why);
   MotionAnswer motionOf(const WaitingCloud& waiting, bool settle);
   void label(const WaitingCloud& waiting, const ScanMotion& motion);
