@@ -53,7 +53,7 @@ std::string listOfScenes() {
 
 void check(const Arguments& arguments) {
   std::vector<std::string> faults = arguments.options.faults();
-  if (!simulation::isScene(arguments.scene)) faults.push_back(simulation::unknownScene(arguments.scene));
+  if (!simulation::isScene(arguments.scene)) faults.emplace_back(simulation::unknownScene(arguments.scene));
   const bool endless = arguments.options.duration == 0.0;
   if (endless) faults.push_back("duration is 0: no file is endless");
   std::string text;
