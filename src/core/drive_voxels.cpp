@@ -17,6 +17,9 @@ void visitAround(const Index3& voxel, int reach, Visit&& visit) {
   }
 }
 
+/// To look for neighbours any voxel of that key does: theirs have the same keys.
+Index3 anyOfKey(VoxelKey key) { return voxelOfKey(key, Index3::Zero()); }
+
 }  // namespace
 
 bool DriveVoxel::isHitNear(std::uint32_t scan, std::uint32_t reach) const {
@@ -42,7 +45,7 @@ std::vector<VoxelKey> DriveVoxels::clusterAround(VoxelKey start,
   std::vector<VoxelKey> cluster{start};
   seen[start] = true;
   for (std::size_t next = 0; next < cluster.size(); ++next) {
-    visitAround(voxelOfKey(cluster[next]), 1, [&](const Index3& neighbour) {
+    visitAround(anyOfKey(cluster[next]), 1, [&](const Index3& neighbour) {
       const DriveVoxel* voxel = find(neighbour);
       const bool joins = voxel != nullptr && voxel->free && seen.try_emplace(keyOf(neighbour), true).second;
       if (joins) cluster.push_back(keyOf(neighbour));
@@ -66,7 +69,7 @@ void DriveVoxels::markHalfFreed() {
   constexpr int kReach = 2;
   for (const auto& [key, voxel] : voxels_) {
     if (!voxel.free) continue;
-    visitAround(voxelOfKey(key), kReach, [&, &scans = voxel.scans](const Index3& neighbour) {
+    visitAround(anyOfKey(key), kReach, [&, &scans = voxel.scans](const Index3& neighbour) {
       DriveVoxel* near_voxel = find(neighbour);
       if (near_voxel == nullptr || near_voxel->free) return;
       near_voxel->half_freed.insert(near_voxel->half_freed.end(), scans.begin(), scans.end());

@@ -28,7 +28,7 @@ std::optional<Labels> readPrediction(ScoredPrediction& prediction, std::size_t i
 void scoreScan(const SequenceReader& sequence, std::size_t index, const ObjectSpeeds& speeds, const Labels& truth,
                std::vector<ScoredPrediction>& predictions) {
   const std::vector<Eigen::Vector3f> echoes = sequence.scan(index).echoes;
-  const auto speed_of = [&](std::uint32_t instance) { return speeds.at(instance, sequence.stamp(index)); };
+  const auto speed_of = [&](std::uint32_t label) { return speeds.at(label, sequence.stamp(index)); };
   for (ScoredPrediction& prediction : predictions) {
     const auto labels = readPrediction(prediction, index, echoes.size());
     if (labels) prediction.evaluation.add(index, echoes, truth, *labels, speed_of);
@@ -59,13 +59,12 @@ SequenceComparison compareOnSequence(const SequenceReader& sequence, std::size_t
                                      const std::vector<std::pair<std::string, fs::path>>& predictions,
                                      const std::function<void()>& progress) {
   SequenceComparison comparison;
-  const fs::path directory = sequence.directory() / "";  // so that a path with and one without a slash have one name
-  comparison.name = directory.parent_path().filename().string();
+  comparison.name = sequence.name();
   comparison.scans = scans;
   for (const auto& [name, labels] : predictions) {
     comparison.predictions.push_back({name, labels, Evaluation(), readRunFigures(labels), Faults()});
   }
-  const ObjectSpeeds speeds(sequence);
+  const ObjectSpeeds speeds(sequence, scans);
   std::pair<bool, std::size_t> best{false, 0};  // whether it moves in the second half, moving echoes
   std::optional<std::size_t> best_scan;
   for (std::size_t i = 0; i < scans; ++i) {

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <fstream>
 #include <string_view>
 
@@ -42,15 +43,21 @@ json objectsOf(const ObjectCounts& objects) {
   return {{"found", objects.found}, {"all", objects.all}, {"recall", number(objects.recall())}};
 }
 
+/// Where nothing was measured, 0 would be a lie.
+template <class Figure>
+json measured(Figure value) {
+  return value == 0 ? json(nullptr) : json(value);
+}
+
 json figuresOf(const RunFigures& figures) {
   return {{"method", figures.method},
           {"scans", figures.scans},
           {"median_time", figures.median_time},
           {"p99_time", figures.p99_time},
-          {"median_cpu_time", figures.median_cpu_time},
-          {"mean_cpu_time", figures.mean_cpu_time},
+          {"median_cpu_time", measured(figures.median_cpu_time)},
+          {"mean_cpu_time", measured(figures.mean_cpu_time)},
           {"peak_memory", figures.peak_memory},
-          {"method_memory", figures.method_memory}};
+          {"method_memory", measured(figures.method_memory)}};
 }
 
 /// Every group of counts under its name: the one list for JSON and CSV.
@@ -138,6 +145,11 @@ json documentOf(const Comparison& comparison, bool with_views) {
           {"table_1", table1Of(comparison)}};
 }
 
+/// Names of files may hold what is no UTF-8.
+std::string textOf(const json& document, int indent = -1) {
+  return document.dump(indent, ' ', false, json::error_handler_t::replace);
+}
+
 /// A field of a CSV: in quotes where it has to be.
 std::string field(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
@@ -157,9 +169,9 @@ std::string csvLine(const std::string& start, const std::string& group, const st
 
 }  // namespace
 
-std::string toJson(const Comparison& comparison) { return documentOf(comparison, false).dump(2) + '\n'; }
+std::string toJson(const Comparison& comparison) { return textOf(documentOf(comparison, false), 2) + '\n'; }
 
-std::string toJson(const ScoredPrediction& prediction) { return predictionOf(prediction).dump(); }
+std::string toJson(const ScoredPrediction& prediction) { return textOf(predictionOf(prediction)); }
 
 std::string toCsv(const Comparison& comparison) {
   std::string text =
@@ -185,16 +197,16 @@ std::string toCsv(const Comparison& comparison) {
 
 std::string toHtml(const Comparison& comparison) {
   const std::string place = "/*DATA*/null";
-  std::string data = documentOf(comparison, true).dump();
-  // Inside a script element only "</" could end it.
-  for (std::size_t at = 0; (at = data.find("</", at)) != std::string::npos; at += 3) data.insert(at + 1, "\\");
+  std::string data = textOf(documentOf(comparison, true));
+  // In a script element a tag would end it, or a comment hide its end.
+  for (std::size_t at = 0; (at = data.find('<', at)) != std::string::npos;) data.replace(at, 1, "\\u003c");
   std::string page = kReportPage;
   page.replace(page.find(place), place.size(), data);
   return page;
 }
 
 void writeRunFigures(const fs::path& directory, const RunFigures& figures) {
-  writeWhole(directory / "run.json", figuresOf(figures).dump(2) + '\n');
+  writeWhole(directory / "run.json", textOf(figuresOf(figures), 2) + '\n');
 }
 
 std::optional<RunFigures> readRunFigures(const fs::path& directory) {
@@ -202,9 +214,9 @@ std::optional<RunFigures> readRunFigures(const fs::path& directory) {
   if (!stream) return std::nullopt;
   try {
     const json figures = json::parse(stream);
-    return RunFigures{figures.at("method"),      figures.at("scans"),           figures.at("median_time"),
-                      figures.at("p99_time"),    figures.at("median_cpu_time"), figures.at("mean_cpu_time"),
-                      figures.at("peak_memory"), figures.at("method_memory")};
+    const auto read = [&](const char* name) { return figures.at(name).is_null() ? json(0) : figures.at(name); };
+    return RunFigures{figures.at("method"),    figures.at("scans"),   figures.at("median_time"), figures.at("p99_time"),
+                      read("median_cpu_time"), read("mean_cpu_time"), figures.at("peak_memory"), read("method_memory")};
   } catch (const json::exception& error) {
     throw DataError(fmt::format("{}: {}", (directory / "run.json").string(), error.what()));
   }

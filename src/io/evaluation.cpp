@@ -53,7 +53,7 @@ void Evaluation::add(std::size_t scan_index, const std::vector<Eigen::Vector3f>&
     const bool is_object = isMoving(truth[i]) && instanceOfLabel(truth[i]) != 0;
     if (is_object) instances[truth[i]].add(true, isMoving(prediction[i]));
   }
-  for (const auto& [label, counts] : instances) addObject(label, counts, speed_of(instanceOfLabel(label)));
+  for (const auto& [label, counts] : instances) addObject(label, counts, speed_of(label));
 }
 
 void Evaluation::addObject(std::uint32_t truth, const Counts& counts, const std::optional<double>& speed) {

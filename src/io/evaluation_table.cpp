@@ -69,7 +69,8 @@ std::string formatRows(const std::vector<std::vector<std::string>>& rows) {
 std::vector<std::string> figuresOf(const NamedEvaluation& column) {
   if (!column.figures) return {"-", "-", "-"};
   const RunFigures& figures = *column.figures;
-  return {fmt::format("{:.1f} ms", 1e3 * figures.median_time), fmt::format("{:.1f} ms", 1e3 * figures.mean_cpu_time),
+  return {fmt::format("{:.1f} ms", 1e3 * figures.median_time),
+          figures.mean_cpu_time == 0.0 ? "-" : fmt::format("{:.1f} ms", 1e3 * figures.mean_cpu_time),
           fmt::format("{:.0f} MB", 1e-6 * static_cast<double>(figures.peak_memory))};
 }
 

@@ -21,6 +21,10 @@ std::vector<std::uint32_t> readLabels(const fs::path& file) {
   if (bytes % sizeof(std::uint32_t) != 0) {
     throw DataError(file.string() + ": " + std::to_string(bytes) + " bytes, no multiple of 4 (a label)");
   }
+  if (bytes / sizeof(std::uint32_t) > kMostEchoes) {
+    throw DataError(file.string() + ": " + std::to_string(bytes) + " bytes, of more than " +
+                    std::to_string(kMostEchoes) + " echoes");
+  }
   std::vector<std::uint32_t> labels(bytes / sizeof(std::uint32_t));
   std::ifstream stream(file, std::ios::binary);
   stream.read(reinterpret_cast<char*>(labels.data()), static_cast<std::streamsize>(bytes));

@@ -5,8 +5,10 @@
 
 namespace donex {
 
-ObjectSpeeds::ObjectSpeeds(const SequenceReader& sequence) {
+ObjectSpeeds::ObjectSpeeds(const SequenceReader& sequence, std::size_t scans) {
   for (std::size_t i = 0; i < sequence.size(); ++i) {
+    const bool is_needed = i < scans || (scans > 0 && sequence.stamp(i) < sequence.stamp(scans - 1) + kReach);
+    if (!is_needed) return;
     if (!sequence.hasLabels(i)) continue;
     add(sequence.stamp(i), sequence.pose(i), sequence.scan(i).echoes, sequence.labels(i));
   }
@@ -17,18 +19,18 @@ void ObjectSpeeds::add(double stamp, const Pose& odom_from_sensor, const std::ve
   std::map<std::uint32_t, std::pair<Eigen::Vector3d, double>> sums;
   for (std::size_t i = 0; i < labels.size(); ++i) {
     if (instanceOfLabel(labels[i]) == 0 || !echoes[i].allFinite()) continue;
-    auto& [sum, count] = sums.try_emplace(instanceOfLabel(labels[i]), Eigen::Vector3d::Zero(), 0.0).first->second;
+    auto& [sum, count] = sums.try_emplace(labels[i], Eigen::Vector3d::Zero(), 0.0).first->second;
     sum += echoes[i].cast<double>();
     count += 1.0;
   }
   const Eigen::Isometry3d odom = odom_from_sensor.isometry();
-  for (const auto& [instance, sum] : sums) {
-    centers_[instance].emplace_back(stamp, odom * Eigen::Vector3d(sum.first / sum.second));
+  for (const auto& [label, sum] : sums) {
+    centers_[label].emplace_back(stamp, odom * Eigen::Vector3d(sum.first / sum.second));
   }
 }
 
-std::optional<double> ObjectSpeeds::at(std::uint32_t instance, double stamp) const {
-  const auto found = centers_.find(instance);
+std::optional<double> ObjectSpeeds::at(std::uint32_t label, double stamp) const {
+  const auto found = centers_.find(label);
   if (found == centers_.end()) return std::nullopt;
   const auto& centers = found->second;
   const auto earlier = [](const auto& center, double time) { return center.first < time; };

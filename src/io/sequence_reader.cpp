@@ -55,6 +55,9 @@ std::size_t countUnits(const fs::path& file, std::uintmax_t unit, const char* un
   if (bytes % unit != 0) {
     faults.add(fmt::format("{}: {} bytes, no multiple of {} ({})", file.string(), bytes, unit, unit_name));
   }
+  if (bytes / unit > kMostEchoes) {
+    faults.add(fmt::format("{}: {} bytes, of more than {} echoes", file.string(), bytes, kMostEchoes));
+  }
   return static_cast<std::size_t>(bytes / unit);
 }
 
@@ -187,6 +190,10 @@ void SequenceReader::checkLabels(Faults& faults) {
       has_labels_[number] = 1;
     }
   }
+}
+
+std::string SequenceReader::name() const {
+  return (fs::absolute(directory_) / "").lexically_normal().parent_path().filename().string();
 }
 
 bool SequenceReader::hasLabels() const {

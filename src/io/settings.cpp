@@ -1,7 +1,7 @@
 #include "settings.h"
 
+#include <algorithm>
 #include <optional>
-#include <regex>
 #include <sstream>
 
 #include <fmt/ranges.h>
@@ -11,21 +11,39 @@
 namespace donex {
 namespace {
 
+std::size_t endOfSign(const std::string& text) { return !text.empty() && (text[0] == '-' || text[0] == '+') ? 1 : 0; }
+std::size_t endOfDigits(const std::string& text, std::size_t from) {
+  return std::min(text.find_first_not_of("0123456789", from), text.size());
+}
+
 // rosparam reads YAML 1.1: "1e-3" and "010" would reach a node as a string and as eight. The same file has to
 // mean the same here, so that such spellings are refused.
+
+/// A sign or none, digits without a zero ahead of them.
 bool isInteger(const std::string& text) {
-  static const std::regex pattern("[-+]?(0|[1-9][0-9]*)");
-  return std::regex_match(text, pattern);
+  const std::size_t first = endOfSign(text), end = endOfDigits(text, first), digits = end - first;
+  return digits > 0 && end == text.size() && (text[first] != '0' || digits == 1);
 }
+/// e or E, a sign, digits.
+bool isExponent(const std::string& text) {
+  if (text.size() < 3 || (text[0] != 'e' && text[0] != 'E')) return false;
+  return (text[1] == '-' || text[1] == '+') && endOfDigits(text, 2) == text.size();
+}
+/// An integer; or a sign or none, digits with a point, an exponent or none.
 bool isReal(const std::string& text) {
-  static const std::regex pattern("[-+]?([0-9]+\\.[0-9]*|\\.[0-9]+)([eE][-+][0-9]+)?");
-  return isInteger(text) || std::regex_match(text, pattern);
+  const std::size_t first = endOfSign(text), point = endOfDigits(text, first);
+  if (point == text.size() || text[point] != '.') return isInteger(text);
+  const std::size_t end = endOfDigits(text, point + 1);
+  const bool has_digits = end - first > 1;
+  return has_digits && (end == text.size() || isExponent(text.substr(end)));
 }
 std::optional<bool> parseBool(const std::string& text) {
-  static const std::regex yes("yes|Yes|YES|true|True|TRUE|on|On|ON");
-  static const std::regex no("no|No|NO|false|False|FALSE|off|Off|OFF");
-  if (std::regex_match(text, yes)) return true;
-  if (std::regex_match(text, no)) return false;
+  for (const char* yes : {"yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON"}) {
+    if (text == yes) return true;
+  }
+  for (const char* no : {"no", "No", "NO", "false", "False", "FALSE", "off", "Off", "OFF"}) {
+    if (text == no) return false;
+  }
   return std::nullopt;
 }
 bool isQuoted(const YAML::Node& value) { return value.Tag() == "!"; }
@@ -38,7 +56,10 @@ std::string shown(const YAML::Node& value) {
   if (value.IsNull()) return "nothing";
   if (value.IsMap()) return "a map";
   if (value.IsSequence()) return "a list";
-  return isQuoted(value) ? fmt::format("\"{}\"", value.Scalar()) : value.Scalar();
+  constexpr std::size_t kMost = 80;  // of a text that is no parameter, but half a book
+  const std::string& all = value.Scalar();
+  const std::string text = all.size() > kMost ? all.substr(0, kMost) + "..." : all;
+  return isQuoted(value) ? fmt::format("\"{}\"", text) : text;
 }
 
 /// Takes from the settings what a parameter asks for, strictly by its type.
@@ -103,7 +124,9 @@ class SettingsVisitor {
   void read(const ParameterInfo& info, const std::string& text, Number& value) {
     std::istringstream stream(text[0] == '+' ? text.substr(1) : text);
     stream.imbue(std::locale::classic());
-    if (!(stream >> value)) refuse(info, "is too large");
+    Number number{};
+    if (!(stream >> number)) return refuse(info, "is too large");
+    value = number;
   }
   void refuse(const ParameterInfo& info, const std::string& reason) {
     const Setting& setting = settings_.at(info.name);

@@ -16,11 +16,20 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The header of a PCD; padded, so that it can be written over once the number of points is known.
-std::string header(std::size_t points) {
+std::string header(std::size_t points, const Eigen::Vector3d& origin) {
   return fmt::format(
-      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n"
+      "# .PCD v0.7 - Point Cloud Data file format\n# origin {1} {2} {3}\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F "
+      "F F\nCOUNT 1 1 1\n"
       "WIDTH {0:<20}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {0:<20}\nDATA binary\n",
-      points);
+      points, origin.x(), origin.y(), origin.z());
+}
+
+/// Where a drive is far from the odometry frame's origin, as in UTM, whole kilometres near its first point.
+Eigen::Vector3d originNear(const Eigen::Vector3d& first) {
+  constexpr double kFar = 10000.0;  // [m] float32 knows places so far away to a millimetre
+  constexpr double kStep = 1000.0;
+  if (first.cwiseAbs().maxCoeff() < kFar) return Eigen::Vector3d::Zero();
+  return (first / kStep).array().round() * kStep;
 }
 
 }  // namespace
@@ -28,16 +37,21 @@ std::string header(std::size_t points) {
 StaticMap::StaticMap(fs::path file, double voxel_size, std::size_t memory_limit)
     : file_(std::move(file)), voxel_size_(voxel_size), memory_limit_(memory_limit) {}
 
-StaticMap::~StaticMap() {
+StaticMap::~StaticMap() { removePutAway(); }
+
+void StaticMap::removePutAway() {
   std::error_code ignored;
   for (const auto& tile : put_away_) fs::remove(fileOf(tile.first), ignored);
+  put_away_.clear();
 }
 
 fs::path StaticMap::fileOf(const TileIndex& index) const {
   return fmt::format("{}.{}.{}_{}.part", file_.string(), getpid(), index.first, index.second);
 }
 
-void StaticMap::add(const Eigen::Vector3d& point) {
+void StaticMap::add(const Eigen::Vector3d& in_odom) {
+  if (!origin_) origin_ = originNear(in_odom);
+  const Eigen::Vector3d point = in_odom - *origin_;
   const Eigen::Array3d in_voxels = (point / voxel_size_).array().floor();
   const Index3 voxel = in_voxels.cast<int>();
   const Eigen::Array2d in_tiles = (point.head<2>() / kTile).array().floor();
@@ -53,7 +67,7 @@ void StaticMap::settle(const Eigen::Vector3d& vehicle) {
   std::vector<std::pair<double, TileIndex>> farthest_first;
   for (const auto& [index, tile] : tiles_) {
     const Eigen::Vector2d center((index.first + 0.5) * kTile, (index.second + 0.5) * kTile);
-    farthest_first.emplace_back(-(center - vehicle.head<2>()).norm(), index);
+    farthest_first.emplace_back(-(center - (vehicle - origin()).head<2>()).norm(), index);
   }
   std::sort(farthest_first.begin(), farthest_first.end());
   // Half of it, so that this does not happen in every scan.
@@ -65,14 +79,15 @@ void StaticMap::settle(const Eigen::Vector3d& vehicle) {
 
 void StaticMap::putAway(const TileIndex& index) {
   const auto tile = tiles_.find(index);
-  std::ofstream stream(fileOf(index), std::ios::binary | std::ios::app);
+  std::ofstream stream(fileOf(index),
+                       std::ios::binary | (put_away_.count(index) != 0 ? std::ios::app : std::ios::trunc));
   for (const auto& [key, mean] : tile->second) {
     stream.write(reinterpret_cast<const char*>(&key), sizeof(key));
     stream.write(reinterpret_cast<const char*>(mean.sum.data()), 3 * sizeof(float));
     stream.write(reinterpret_cast<const char*>(&mean.count), sizeof(mean.count));
   }
   stream.close();
-  ++put_away_[index];
+  put_away_[index] += tile->second.size();
   if (!stream) throw DataError(fileOf(index).string() + ": cannot be written");
   voxels_ -= tile->second.size();
   tiles_.erase(tile);
@@ -80,11 +95,13 @@ void StaticMap::putAway(const TileIndex& index) {
 
 void StaticMap::takeBack(const TileIndex& index, Tile& tile) const {
   std::ifstream stream(fileOf(index), std::ios::binary);
-  VoxelKey key = 0;
-  while (stream.read(reinterpret_cast<char*>(&key), sizeof(key))) {
+  for (std::size_t i = 0; i < put_away_.at(index); ++i) {
+    VoxelKey key = 0;
     Mean read;
+    stream.read(reinterpret_cast<char*>(&key), sizeof(key));
     stream.read(reinterpret_cast<char*>(read.sum.data()), 3 * sizeof(float));
     stream.read(reinterpret_cast<char*>(&read.count), sizeof(read.count));
+    if (!stream) throw DataError(fileOf(index).string() + ": what was put away here is gone");
     Mean& mean = tile[key];
     mean.sum += read.sum;
     mean.count += read.count;
@@ -92,13 +109,15 @@ void StaticMap::takeBack(const TileIndex& index, Tile& tile) const {
 }
 
 /// In the order of the keys: the same map is the same file.
-std::size_t StaticMap::writeTile(Tile& tile, std::ostream& stream) const {
+std::size_t StaticMap::writeTile(const TileIndex& index, const Tile& tile, std::ostream& stream) const {
+  const Eigen::Array3d corner_of_tile(index.first * kTile, index.second * kTile, 0.0);
+  const Index3 near = (corner_of_tile / voxel_size_).floor().cast<int>();
   std::vector<VoxelKey> keys;
   for (const auto& entry : tile) keys.push_back(entry.first);
   std::sort(keys.begin(), keys.end());
   for (const VoxelKey key : keys) {
     const Mean& mean = tile.at(key);
-    const Eigen::Vector3d corner = voxelOfKey(key).cast<double>() * voxel_size_;
+    const Eigen::Vector3d corner = voxelOfKey(key, near).cast<double>() * voxel_size_;
     const Eigen::Vector3f point = (corner + (mean.sum / static_cast<float>(mean.count)).cast<double>()).cast<float>();
     stream.write(reinterpret_cast<const char*>(point.data()), 3 * sizeof(float));
   }
@@ -107,19 +126,20 @@ std::size_t StaticMap::writeTile(Tile& tile, std::ostream& stream) const {
 
 std::size_t StaticMap::write() {
   WholeFile whole(file_);
-  whole.stream() << header(0);
+  whole.stream() << header(0, origin());
   std::size_t points = 0;
   for (const auto& entry : put_away_) tiles_[entry.first];
   while (!tiles_.empty()) {
     const auto tile = tiles_.begin();
     if (put_away_.count(tile->first) != 0) takeBack(tile->first, tile->second);
-    points += writeTile(tile->second, whole.stream());
+    points += writeTile(tile->first, tile->second, whole.stream());
     tiles_.erase(tile);
   }
   voxels_ = 0;
   whole.stream().seekp(0);
-  whole.stream() << header(points);
+  whole.stream() << header(points, origin());
   whole.commit();
+  removePutAway();
   return points;
 }
 

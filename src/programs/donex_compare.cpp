@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <set>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <sys/wait.h>
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 struct Arguments {
   std::vector<std::string> sequences;
   std::string out;
-  std::vector<std::string> methods;
+  std::string methods;     ///< separated by commas; empty: all
   std::size_t frames = 0;  ///< 0: all
   bool skip_table_1 = false;
 };
@@ -64,10 +65,11 @@ std::vector<Contender> allContenders() {
        defaultOf(Method::kPeopleremover)}};
 }
 
-std::vector<Contender> chooseContenders(const std::vector<std::string>& names) {
+std::vector<Contender> chooseContenders(const std::string& names) {
   std::vector<Contender> all = allContenders(), chosen;
   if (names.empty()) return all;
-  for (const std::string& name : names) {
+  std::istringstream list(names);
+  for (std::string name; std::getline(list, name, ',');) {
     const auto found = std::find_if(all.begin(), all.end(), [&](const Contender& c) { return c.note.name == name; });
     if (found == all.end()) {
       std::string known;
@@ -96,8 +98,9 @@ void inOwnProcess(const std::string& what, const std::function<void()>& work) {
     _exit(code);
   }
   int status = 0;
-  waitpid(child, &status, 0);
-  const bool is_done = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  const bool has_ended = waitpid(child, &status, 0) == child;
+  if (has_ended && WIFSIGNALED(status)) throw DataError(fmt::format("{}: ended by signal {}", what, WTERMSIG(status)));
+  const bool is_done = has_ended && WIFEXITED(status) && WEXITSTATUS(status) == 0;
   if (!is_done) throw DataError(what + ": could not be run");
 }
 
@@ -114,17 +117,15 @@ void runContender(const SequenceReader& sequence, std::size_t scans, const Confi
   writeRunFigures(out, figuresOf(drive, config));
 }
 
-/// The name of its directory, with a number where two are called alike.
-std::string nameOf(const std::string& directory, std::set<std::string>& taken) {
-  const std::string name = (fs::absolute(directory) / "").lexically_normal().parent_path().filename().string();
-  std::string unique = name;
-  for (int i = 2; !taken.insert(unique).second; ++i) unique = fmt::format("{}_{}", name, i);
+/// The sequence's name, with a number where two are called alike.
+std::string nameOf(const SequenceReader& sequence, std::set<std::string>& taken) {
+  std::string unique = sequence.name();
+  for (int i = 2; !taken.insert(unique).second; ++i) unique = fmt::format("{}_{}", sequence.name(), i);
   return unique;
 }
 
-SequenceComparison compare(const std::string& directory, const std::string& name, const Arguments& arguments,
+SequenceComparison compare(const SequenceReader& sequence, const std::string& name, const Arguments& arguments,
                            const std::vector<Contender>& contenders) {
-  const SequenceReader sequence(directory);
   const std::size_t scans = scansOf(sequence, arguments.frames);
   std::vector<std::pair<std::string, fs::path>> predictions;
   for (const Contender& contender : contenders) {
@@ -177,7 +178,7 @@ void writeReports(const Comparison& comparison, const fs::path& out) {
   fmt::print("\n{}\n", (out / "report.html").string());
 }
 
-void run(const Arguments& arguments) {
+void run(const CLI::App& app, const Arguments& arguments) {
   const auto contenders = chooseContenders(arguments.methods);
   Comparison comparison;
   comparison.title = "DONEX and the systems it is compared with";
@@ -185,12 +186,13 @@ void run(const Arguments& arguments) {
   for (const std::string& sequence : arguments.sequences) comparison.command += " " + sequence;
   for (const Contender& contender : contenders) comparison.methods.push_back(contender.note);
   for (const std::string& directory : arguments.sequences) {  // all faults of the input before the first hour of work
-    requireTruth(SequenceReader(directory));
+    requireTruth(openSequence(app, directory));
   }
   createDirectory(arguments.out);
   std::set<std::string> names;
   for (const std::string& directory : arguments.sequences) {
-    comparison.sequences.push_back(compare(directory, nameOf(directory, names), arguments, contenders));
+    const SequenceReader sequence(directory);
+    comparison.sequences.push_back(compare(sequence, nameOf(sequence, names), arguments, contenders));
   }
   if (!arguments.skip_table_1) fillTable1(comparison, arguments.sequences.front(), arguments.out);
   writeReports(comparison, arguments.out);
@@ -205,8 +207,9 @@ int main(int argc, char** argv) {
   donex::Arguments arguments;
   app.add_option("SEQ_DIR", arguments.sequences, "sequences with labels/NNNNNN.label")->required();
   app.add_option("--out", arguments.out, "directory for report.html, .csv, .json and predictions/")->required();
-  app.add_option("--methods", arguments.methods, "only these, separated by commas; by default all")->delimiter(',');
+  // One text, not a list: a list would swallow the sequences behind it.
+  app.add_option("--methods", arguments.methods, "only these, separated by commas; by default all");
   app.add_option("--frames", arguments.frames, "only the first N scans")->check(CLI::PositiveNumber);
   app.add_flag("--skip-table-1", arguments.skip_table_1, "leave out the times of the paper's Table 1");
-  return donex::runProgram(app, argc, argv, [&] { donex::run(arguments); });
+  return donex::runProgram(app, argc, argv, [&] { donex::run(app, arguments); });
 }

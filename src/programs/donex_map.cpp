@@ -1,4 +1,5 @@
 // A map of what stands still, from a sequence or a bag.
+#include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
@@ -27,6 +28,9 @@ struct Arguments {
   std::string points, odom;
 };
 
+/// In percent; "-" where there was nothing to rate.
+std::string percent(double rate) { return std::isnan(rate) ? "-" : fmt::format("{:.2f} %", 100.0 * rate); }
+
 /// Takes the static echoes of scans into the map, and scores what it took where the truth is known.
 class Mapper {
  public:
@@ -36,7 +40,7 @@ class Mapper {
   void add(const Scan& scan, const EchoLabels& labels, const std::vector<std::uint32_t>& truth) {
     const Eigen::Isometry3d odom_from_sensor = scan.odomFromSensor();
     for (std::size_t i = 0; i < scan.echoes.size(); ++i) {
-      const bool is_in_range = scan.echoes[i].head<2>().norm() <= range_ && std::isfinite(scan.echoes[i].z());
+      const bool is_in_range = scan.echoes[i].head<2>().norm() <= range_ && std::abs(scan.echoes[i].z()) <= range_;
       if (!is_in_range) continue;
       const Eigen::Vector3d point = odom_from_sensor * scan.echoes[i].cast<double>();
       const bool is_kept = labels.dynamic[i] == 0;
@@ -54,13 +58,18 @@ class Mapper {
     const std::size_t points = map_.write();
     fmt::print("{} scans, {} of {} echoes kept as static; {} points of {} m in {}\n", scans_, kept_, echoes_, points,
                arguments.map_voxel, arguments.out);
+    const Eigen::Vector3d origin = map_.origin();
+    if (!origin.isZero(0.0)) {
+      fmt::print("coordinates begin at {} {} {} of the odometry frame\n", origin.x(), origin.y(), origin.z());
+    }
     fmt::print("peak memory: {}; {} tiles were put away on the way\n", megabytes(peakMemory()), tiles);
     if (!arguments.compare) return;
     const MapScore::Rates r = score_.rates();
-    fmt::print("\nby voxel of 0.2 m (ERASOR):   PR {:.2f} %  RR {:.2f} %  F1 {:.4f}   ({} static, {} dynamic voxels)\n",
-               100 * r.preservation, 100 * r.rejection, r.f1, r.static_voxels, r.dynamic_voxels);
-    fmt::print("by echo (DynamicMap_Benchmark): SA {:.2f} %  DA {:.2f} %  AA {:.2f} %   ({} static, {} moving)\n",
-               100 * r.static_accuracy, 100 * r.dynamic_accuracy, 100 * r.associated, r.static_echoes,
+    fmt::print("\nby voxel of 0.2 m (ERASOR):   PR {}  RR {}  F1 {}   ({} static, {} dynamic voxels)\n",
+               percent(r.preservation), percent(r.rejection), std::isnan(r.f1) ? "-" : fmt::format("{:.4f}", r.f1),
+               r.static_voxels, r.dynamic_voxels);
+    fmt::print("by echo (DynamicMap_Benchmark): SA {}  DA {}  AA {}   ({} static, {} moving)\n",
+               percent(r.static_accuracy), percent(r.dynamic_accuracy), percent(r.associated), r.static_echoes,
                r.dynamic_echoes);
   }
 
@@ -116,6 +125,8 @@ void run(const CLI::App& app, const Arguments& arguments, const Config& config) 
   const bool is_bag = fs::path(arguments.in).extension() == ".bag";
 #ifdef DONEX_WITH_BAGS
   if (is_bag && arguments.frames != 0) throw ArgumentError("--frames is for sequences");
+  const bool has_topics = !arguments.points.empty() || !arguments.odom.empty();
+  if (!is_bag && has_topics) throw ArgumentError("--points and --odom are for bags");
   is_bag ? mapBag(app, arguments, config, mapper) : mapSequence(app, arguments, config, mapper);
 #else
   if (is_bag) throw ArgumentError(arguments.in + ": this donex_map was built without ROS and reads no bags");
@@ -137,7 +148,7 @@ int main(int argc, char** argv) {
   app.add_option("--range", arguments.range, "echoes within this range of the sensor [m], by default 50")
       ->check(CLI::PositiveNumber);
   app.add_option("--memory", arguments.memory, "most memory that the map's voxels take [MB], by default 500")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, 10000000));
   app.add_option("--frames", arguments.frames, "only the first N scans of a sequence")->check(CLI::PositiveNumber);
   app.add_flag("--compare", arguments.compare,
                "score the map by the labels of the sequence or of the bag's clouds: PR, RR, F1, SA, DA, AA");

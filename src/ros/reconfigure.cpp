@@ -15,7 +15,7 @@ namespace {
 struct UnclampedConfig : DonexConfig {
   UnclampedConfig() = default;
   UnclampedConfig(const DonexConfig& config) : DonexConfig(config) {}
-  void __clamp__() {}
+  void __clamp__() {}  // NOLINT(bugprone-reserved-identifier): the generator names it so
 };
 
 UnclampedConfig generatedFrom(const Config& config) {

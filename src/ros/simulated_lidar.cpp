@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <ros/ros.h>
@@ -73,7 +74,7 @@ struct Turn {
 
 class SimulatedLidar::Implementation {
  public:
-  Implementation(ros::NodeHandle nh, const Settings& settings);
+  Implementation(ros::NodeHandle nh, Settings settings);
   ~Implementation();
 
  private:
@@ -95,7 +96,7 @@ class SimulatedLidar::Implementation {
   std::thread thread_;
 };
 
-SimulatedLidar::Implementation::Implementation(ros::NodeHandle nh, const Settings& settings) : settings_(settings) {
+SimulatedLidar::Implementation::Implementation(ros::NodeHandle nh, Settings settings) : settings_(std::move(settings)) {
   constexpr std::uint32_t kClouds = 10;
   constexpr std::uint32_t kOdometry = 1000;
   cloud_publisher_ = nh.advertise<sensor_msgs::PointCloud2>("points", kClouds);

@@ -38,7 +38,7 @@ sensor_msgs::PointCloud2Ptr toCloud(const simulation::SimulatedScan& scan, const
   std_msgs::Header header;
   header.stamp = ros::Time(scan.stamp);
   header.frame_id = frames.sensor;
-  const auto cloud = makeCloud(header, scan.echoes.size(), sizeof(Row));
+  auto cloud = makeCloud(header, scan.echoes.size(), sizeof(Row));
   cloud->is_dense = true;
   addFields(*cloud);
   for (std::size_t i = 0; i < scan.echoes.size(); ++i) {
@@ -51,7 +51,7 @@ sensor_msgs::PointCloud2Ptr toCloud(const simulation::SimulatedScan& scan, const
 }
 
 nav_msgs::OdometryPtr toOdometry(const OdometrySample& sample, const SimulationFrames& frames) {
-  const auto message = boost::make_shared<nav_msgs::Odometry>();
+  auto message = boost::make_shared<nav_msgs::Odometry>();
   message->header.stamp = ros::Time(sample.stamp);
   message->header.frame_id = frames.odom;
   message->child_frame_id = frames.base;

@@ -1,4 +1,5 @@
 // Every scene by its name.
+#include <array>
 #include <stdexcept>
 
 #include "donex/simulation/simulator.h"
@@ -13,24 +14,25 @@ struct Entry {
   Scene (*make)(std::uint64_t seed);
 };
 
-constexpr Entry kScenes[] = {
-    {"intersection", "a crossroads with traffic and people, the sensor at rest", makeIntersection},
-    {"street", "round a block of houses, parked cars on both sides, traffic, cyclists, people", makeStreet},
-    {"motorway", "three lanes each way at 29 m/s, lorries, guard rails, bridges", makeMotorway},
-    {"bend", "a roundabout and the bends of the road that leads back to it", makeBend},
-    {"lead_vehicle", "a vehicle ahead at the ego vehicle's own speed", makeLeadVehicle},
-    {"oncoming", "a country road with oncoming traffic at 30 m/s", makeOncoming},
-    {"pedestrian_slow", "people on foot at 0.8 m/s", makePedestrianSlow},
-    {"crowd", "a shopping street full of people, some of them standing", makeCrowd},
-    {"stop_and_go", "the car ahead brakes to a stop and starts again, and so does the oncoming traffic", makeStopAndGo},
-    {"parked_car_leaves", "parked cars pull out on both sides", makeParkedCarLeaves},
-    {"foliage", "hedges, bushes and trees in a light wind, people and cyclists between them", makeFoliage},
-    {"fences", "picket fences and guard rails at grazing angles, people behind them", makeFences},
-    {"bridges", "bridges, gantries and branches overhead", makeBridges},
-    {"slope", "over a hill of 7 to 11 %", makeSlope},
-    {"turning", "round and round at 30 degrees a second", makeTurning},
-    {"standstill_start", "stands at a traffic light, then starts", makeStandstillStart},
-    {"empty_room", "a room at rest, seen by a 16-beam sensor: nothing moves", makeEmptyRoom},
+constexpr std::array kScenes{
+    Entry{"intersection", "a crossroads with traffic and people, the sensor at rest", makeIntersection},
+    Entry{"street", "round a block of houses, parked cars on both sides, traffic, cyclists, people", makeStreet},
+    Entry{"motorway", "three lanes each way at 29 m/s, lorries, guard rails, bridges", makeMotorway},
+    Entry{"bend", "a roundabout and the bends of the road that leads back to it", makeBend},
+    Entry{"lead_vehicle", "a vehicle ahead at the ego vehicle's own speed", makeLeadVehicle},
+    Entry{"oncoming", "a country road with oncoming traffic at 30 m/s", makeOncoming},
+    Entry{"pedestrian_slow", "people on foot at 0.8 m/s", makePedestrianSlow},
+    Entry{"crowd", "a shopping street full of people, some of them standing", makeCrowd},
+    Entry{"stop_and_go", "the car ahead brakes to a stop and starts again, and so does the oncoming traffic",
+          makeStopAndGo},
+    Entry{"parked_car_leaves", "parked cars pull out on both sides", makeParkedCarLeaves},
+    Entry{"foliage", "hedges, bushes and trees in a light wind, people and cyclists between them", makeFoliage},
+    Entry{"fences", "picket fences and guard rails at grazing angles, people behind them", makeFences},
+    Entry{"bridges", "bridges, gantries and branches overhead", makeBridges},
+    Entry{"slope", "over a hill of 7 to 11 %", makeSlope},
+    Entry{"turning", "round and round at 30 degrees a second", makeTurning},
+    Entry{"standstill_start", "stands at a traffic light, then starts", makeStandstillStart},
+    Entry{"empty_room", "a room at rest, seen by a 16-beam sensor: nothing moves", makeEmptyRoom},
 };
 
 const Entry* find(const std::string& name) {
@@ -51,7 +53,7 @@ const Entry& entryOf(const std::string& name) {
 const std::vector<std::string>& sceneNames() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
-    for (const Entry& entry : kScenes) all.push_back(entry.name);
+    for (const Entry& entry : kScenes) all.emplace_back(entry.name);
     return all;
   }();
   return names;

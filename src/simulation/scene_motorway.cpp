@@ -1,4 +1,5 @@
 // Two carriageways with three lanes each, guard rails, bridges, gantries.
+#include <array>
 #include <cmath>
 
 #include "donex/core/pi.h"
@@ -16,8 +17,8 @@ double laneAt(int lane) { return kInnerLane + kLaneWidth * lane; }
 
 /// Lane 0 is the fast one. All vehicles of a lane keep their gaps.
 SpeedProfile speedOf(int lane, double phase) {
-  constexpr double kSpeeds[] = {36.0, 29.0, 23.5};
-  return swinging(kSpeeds[lane], 0.6, 14.0, phase);
+  constexpr std::array kSpeeds{36.0, 29.0, 23.5};
+  return swinging(kSpeeds.at(static_cast<std::size_t>(lane)), 0.6, 14.0, phase);
 }
 
 Model vehicleFor(Random& random, int lane) {

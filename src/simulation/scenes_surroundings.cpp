@@ -11,7 +11,7 @@ namespace {
 constexpr double kHalfWidth = 5.3;  // [m]
 
 SharedPath addRoad(SceneBuilder& builder, double straight, double radius, const Roadside& roadside) {
-  const SharedPath path = oval(straight, radius, builder.random().uniform(-kPi, kPi));
+  SharedPath path = oval(straight, radius, builder.random().uniform(-kPi, kPi));
   builder.ground().add({*path, roadside.half_width});
   furnish(builder, *path, 0.0, path->length(), roadside);
   return path;

@@ -10,7 +10,7 @@ constexpr double kParking = 4.15;  // middle of the road to a parked car's middl
 
 /// A circuit between houses.
 SharedPath addTownRoad(SceneBuilder& builder, double straight, const Roadside& roadside = {}) {
-  const SharedPath path = oval(straight, 40.0, builder.random().uniform(-3.1, 3.1));
+  SharedPath path = oval(straight, 40.0, builder.random().uniform(-3.1, 3.1));
   builder.ground().add({*path, roadside.half_width});
   furnish(builder, *path, 0.0, path->length(), roadside);
   return path;

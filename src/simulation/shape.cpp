@@ -58,7 +58,8 @@ Span ellipsoidSpan(const Ray& ray, const Eigen::Vector3f& half) {
 
 float entry(Span span, float limit) {
   const bool hit = span.enter <= span.leave && span.enter > 0.0f && span.enter < limit;
-  return hit ? span.enter : kMiss;
+  if (!hit) return kMiss;
+  return span.enter;
 }
 
 float enterSlats(const Shape& shape, const Ray& ray, float limit) {
@@ -68,7 +69,8 @@ float enterSlats(const Shape& shape, const Ray& ray, float limit) {
   const Eigen::Vector3f at = ray.origin + t * ray.direction;
   if (std::abs(at.x()) > shape.half.x() || std::abs(at.z()) > shape.half.z()) return kMiss;
   const float phase = at.x() / shape.pitch;
-  return phase - std::floor(phase) < shape.fill ? t : kMiss;
+  if (!(phase - std::floor(phase) < shape.fill)) return kMiss;
+  return t;
 }
 
 /// Walks the lattice cells on the ray between enter and leave, nearest first.
@@ -81,7 +83,7 @@ class LatticeWalk {
       const float direction = ray.direction[axis];
       step_[axis] = direction < 0.0f ? -1 : 1;
       delta_[axis] = direction == 0.0f ? kMiss : pitch / std::abs(direction);
-      const float face = static_cast<float>(cell_[axis] + (direction < 0.0f ? 0 : 1));
+      const auto face = static_cast<float>(cell_[axis] + (direction < 0.0f ? 0 : 1));
       next_[axis] = direction == 0.0f ? kMiss : (face * pitch - ray.origin[axis]) / direction;
     }
   }

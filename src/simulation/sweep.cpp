@@ -128,7 +128,8 @@ void Sweep::receive(const Echo& echo) {
   const Surface surface = on_ground ? Surface{window_.label(place.x(), place.y()), kGroundReflectivity}
                                     : surfaces_[static_cast<std::size_t>(echo.hit.target)];
 
-  const auto ray_number = static_cast<std::uint64_t>(echo.column * model_.beams() + echo.beam);
+  const auto ray_number = static_cast<std::uint64_t>(echo.column) * static_cast<std::uint64_t>(model_.beams()) +
+                          static_cast<std::uint64_t>(echo.beam);
   const std::uint64_t bits = scramble(noise_seed_ ^ ray_number);
   const double brightness = static_cast<double>(surface.reflectivity) * facing / (range * range);
   const double kept = (1.0 - std::exp2(-brightness / kFaintest)) * (1.0 - options_.dropout);

@@ -82,9 +82,9 @@ TEST_P(RandomScenes, EqualTheDefinitionEchoByEcho) {
 
 INSTANTIATE_TEST_SUITE_P(Options, RandomScenes,
                          ::testing::Values(RandomCase{0.5, {}}, RandomCase{0.5, {0, false, 0.0, 1, false}},
-                                         RandomCase{0.3, {1, true, 0.1, 3, true}},
-                                         RandomCase{0.8, {2, true, 0.0, 5, false}},
-                                         RandomCase{0.5, {0, false, 0.0, 5, true}}));
+                                           RandomCase{0.3, {1, true, 0.1, 3, true}},
+                                           RandomCase{0.8, {2, true, 0.0, 5, false}},
+                                           RandomCase{0.5, {0, false, 0.0, 5, true}}));
 
 TEST(PointShadows, EqualTheDefinitionOnRandomEchoes) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
@@ -129,6 +129,16 @@ TEST(PeopleRemover, WhatAnotherScanSeesThroughIsDynamic) {
   options.min_cluster = 1;
   options.diff = 1;  // the two scans are one view
   EXPECT_EQ(labelsOf(*makePeopleRemover(config, options), scans), (Labels{{0, 0}, {0}}));
+}
+
+TEST(PeopleRemover, WhereTheOdometryFrameBeginsDoesNotMatter) {
+  PeopleRemoverOptions options;
+  options.min_cluster = 1;
+  options.point_shadows = options.subvoxel = false;
+  std::vector<Scan> scans{scanAt(1.0, {{3.5F, 0.5F, 0.5F}, {3.5F, 3.5F, 0.5F}}), scanAt(1.1, {{6.5F, 0.5F, 0.5F}})};
+  // As UTM has it: more voxels away than a key has bits for.
+  for (Scan& scan : scans) scan.odom_from_base.translation() = Eigen::Vector3d(5e5, 5.4e6, 100.0);
+  EXPECT_EQ(labelsOf(*makePeopleRemover(smallRegion(1.0), options), scans), (Labels{{1, 0}, {0}}));
 }
 
 TEST(PeopleRemover, ItsOwnEchoEndsALineOfSight) {

@@ -27,14 +27,14 @@ TEST(ObjectSpeeds, AreThoseOfTheCentresOverGround) {
     const Pose pose{{x, 0.0, 0.0}, Eigen::Quaterniond::Identity()};
     const Eigen::Vector3f left_behind(20.0F - x, 5.0F, 0.0F);
     speeds.add(0.1 * k, pose, {{9, 0, 0}, {11, 0, 0}, left_behind, {1, 1, 1}},
-               {label(252, 1), label(252, 1), label(9, 2), label(9, 0)});
+               {label(252, 1), label(252, 1), label(254, 1), label(9, 0)});
   }
-  EXPECT_NEAR(*speeds.at(1, 0.5), 10.0, 1e-6);
-  EXPECT_NEAR(*speeds.at(1, 0.0), 10.0, 1e-6);  // one-sided at the ends
-  EXPECT_NEAR(*speeds.at(2, 0.1 * 3), 0.0, 1e-5);
-  EXPECT_FALSE(speeds.at(0, 0.5));
-  EXPECT_FALSE(speeds.at(1, 0.55));  // no scan then
-  EXPECT_FALSE(speeds.at(3, 0.5));
+  EXPECT_NEAR(*speeds.at(label(252, 1), 0.5), 10.0, 1e-6);
+  EXPECT_NEAR(*speeds.at(label(252, 1), 0.0), 10.0, 1e-6);     // one-sided at the ends
+  EXPECT_NEAR(*speeds.at(label(254, 1), 0.1 * 3), 0.0, 1e-5);  // the first person is not the first car
+  EXPECT_FALSE(speeds.at(label(9, 0), 0.5));
+  EXPECT_FALSE(speeds.at(label(252, 1), 0.55));  // no scan then
+  EXPECT_FALSE(speeds.at(label(252, 3), 0.5));
 }
 
 TEST(SpeedBands, AreClosedBelow) {
@@ -64,8 +64,9 @@ TEST(Objects, AreFoundByHalfOfTheirEchoes) {
   put(20, 10, 4, 20, 5.0F);
   put(20, 252, 5, 20, 60.0F);
   Evaluation evaluation;
-  const auto speed_of = [](std::uint32_t instance) {
-    return instance == 1 ? std::optional<double>(5.0) : instance == 2 ? std::optional<double>(0.5) : std::nullopt;
+  const auto speed_of = [](std::uint32_t one) {
+    const bool is_car = one == label(252, 1), is_person = one == label(254, 2);
+    return is_car ? std::optional<double>(5.0) : is_person ? std::optional<double>(0.5) : std::nullopt;
   };
   evaluation.add(5, echoes, truth, prediction, speed_of);
   EXPECT_EQ(evaluation.objects().all, 2U);
@@ -170,6 +171,21 @@ TEST_F(Reports, JsonHoldsEveryCount) {
   EXPECT_EQ(document["sequences"][0].count("view"), 0U);
 }
 
+TEST_F(Reports, NamesNeedNotBeUtf8) {
+  Comparison comparison = compare();
+  comparison.sequences[0].name = "f\xfcr";
+  const json document = json::parse(toJson(comparison));
+  EXPECT_EQ(document["sequences"][0]["name"], "f\xef\xbf\xbdr");
+  EXPECT_NE(toHtml(comparison).find("f\xef\xbf\xbdr"), std::string::npos);
+}
+
+TEST_F(Reports, WhatWasNotMeasuredIsNotZero) {
+  Comparison comparison = compare();
+  comparison.sequences[0].predictions[0].figures->mean_cpu_time = 0.0;
+  const json document = json::parse(toJson(comparison));
+  EXPECT_EQ(document["sequences"][0]["predictions"][0]["figures"]["mean_cpu_time"], nullptr);
+}
+
 TEST_F(Reports, CsvHasAsManyFieldsInEveryLine) {
   std::istringstream lines(toCsv(compare()));
   std::string line;
@@ -189,7 +205,7 @@ TEST_F(Reports, CsvHasAsManyFieldsInEveryLine) {
 TEST_F(Reports, ThePageHoldsAllItShows) {
   const std::string page = toHtml(compare());
   EXPECT_EQ(page.find("/*DATA*/null"), std::string::npos);
-  EXPECT_NE(page.find("A <\\/script> title"), std::string::npos) << "the data ends the script";
+  EXPECT_NE(page.find("A \\u003c/script> title"), std::string::npos) << "the data ends the script";
   std::size_t ends = 0;
   for (std::size_t at = 0; (at = page.find("</script>", at)) != std::string::npos; ++at) ++ends;
   EXPECT_EQ(ends, 1U);

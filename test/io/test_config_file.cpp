@@ -113,6 +113,10 @@ TEST(ConfigFile, NamesEachFault) {
       {"voxel_size: .nan", "config.yaml:1: voxel_size is .nan, must be a number"},
       {"queue_size: 2.5", "config.yaml:1: queue_size is 2.5, must be a whole number"},
       {"queue_size: 010", "config.yaml:1: queue_size is 010, must be a whole number"},
+      {"queue_size: +", "config.yaml:1: queue_size is +, must be a whole number"},
+      {"voxel_size: .", "config.yaml:1: voxel_size is ., must be a number (written as 0.5 or 1.0e-3)"},
+      {"voxel_size: 1.0e-", "config.yaml:1: voxel_size is 1.0e-, must be a number (written as 0.5 or 1.0e-3)"},
+      {"voxel_size: 1.0e3", "config.yaml:1: voxel_size is 1.0e3, must be a number (written as 0.5 or 1.0e-3)"},
       {"queue_size: 99999999999999", "config.yaml:1: queue_size is 99999999999999, is too large"},
       {"queue_size: 0", "config.yaml:1: queue_size is 0, must lie in [1, 1000] clouds"},
       {"markers: 1", "config.yaml:1: markers is 1, must be true or false"},
@@ -138,6 +142,15 @@ TEST(ConfigFile, NamesEachFault) {
     const std::string message = faultsOf(bad.text);
     EXPECT_NE(message.find(bad.message), std::string::npos) << bad.text << "\ngives\n" << message;
   }
+}
+
+TEST(ConfigFile, ANumberMayBeLongerThanAnyStack) {
+  const std::string digits(1000000, '1');
+  EXPECT_EQ(faultsOf("queue_size: " + digits),
+            "config.yaml:1: queue_size is " + digits.substr(0, 80) + "..., is too large");
+  EXPECT_EQ(faultsOf("time_field: " + digits),
+            "config.yaml:1: time_field is " + digits.substr(0, 80) + "..., must be text");
+  EXPECT_EQ(read("voxel_size: 0.3" + std::string(1000000, '0')).voxel_size, 0.3);
 }
 
 TEST(ConfigFile, NamesAllFaultsAtOnce) {

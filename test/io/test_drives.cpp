@@ -1,5 +1,7 @@
 // The fast grids against the oracle, and the default configuration's labels, on whole drives: real ones
 // where DONEX_SHARED_DATA names a folder of sequences, and always a simulated one.
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -119,14 +121,21 @@ TEST_P(Drives, TheDefaultConfigurationFindsWhatMoves) {
       if (scans[k].labels.empty() || !evaluation.scores(k)) continue;
       evaluation.add(k, scans[k].scan.echoes, scans[k].labels, asSemanticKitti(labels));
     }
+    if (evaluation.scans() == 0) GTEST_SKIP() << "no labels";
     ASSERT_GT(evaluation.total().moving(), 1000U);
     EXPECT_GT(evaluation.total().iou(), 0.93);
     EXPECT_GT(evaluation.total().precision(), 0.98);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Drives, ::testing::ValuesIn(drives()),
-                         [](const auto& tested) { return std::filesystem::path(tested.param).filename().string(); });
+/// GoogleTest wants letters, digits and underscores.
+std::string nameOf(const ::testing::TestParamInfo<std::string>& tested) {
+  std::string name = std::filesystem::path(tested.param).filename().string();
+  const auto is_odd = [](unsigned char c) { return std::isalnum(c) == 0; };
+  std::replace_if(name.begin(), name.end(), is_odd, '_');
+  return name;
+}
+INSTANTIATE_TEST_SUITE_P(All, Drives, ::testing::ValuesIn(drives()), nameOf);
 
 }  // namespace
 }  // namespace donex

@@ -35,6 +35,8 @@ std::vector<Spoiled> spoiledSequences() {
        "velodyne: holds no scan NNNNNN.bin"},
       {"OddCloud", [](const fs::path& d) { fs::resize_file(d / "velodyne/000001.bin", 150); },
        "velodyne/000001.bin: 150 bytes, no multiple of 16"},
+      {"CloudOfTera", [](const fs::path& d) { fs::resize_file(d / "velodyne/000001.bin", 1ULL << 40U); },
+       "velodyne/000001.bin: 1099511627776 bytes, of more than 100000000 echoes"},
       {"Gap", [](const fs::path& d) { fs::remove(d / "velodyne/000001.bin"); }, "velodyne: 000001.bin is missing"},
       {"LateStart",
        [](const fs::path& d) {
@@ -131,6 +133,19 @@ TEST(SequenceFaults, ALongListIsCutAndCounted) {
   for (int i = 0; i < 25; ++i) faults.add("fault " + std::to_string(i));
   EXPECT_NE(faults.text().find("fault 19\n... and 5 more"), std::string::npos);
   EXPECT_EQ(faults.text().find("fault 20"), std::string::npos);
+}
+
+TEST(SequenceFaults, LabelsWithoutEndAreNotRead) {
+  const test::TemporaryDirectory directory;
+  const fs::path file = directory.path() / "000000.label";
+  test::writeText(file, "");
+  fs::resize_file(file, 1ULL << 40U);  // a sparse file: it takes no room
+  try {
+    readLabels(file);
+    FAIL() << "they were read";
+  } catch (const DataError& error) {
+    EXPECT_NE(std::string(error.what()).find("000000.label: 1099511627776 bytes"), std::string::npos) << error.what();
+  }
 }
 
 TEST(SequenceFaults, AFileThatShrinksLaterIsNamed) {

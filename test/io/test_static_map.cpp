@@ -4,6 +4,7 @@
 #include <random>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "donex/io/map_score.h"
 #include "donex/io/static_map.h"
@@ -80,6 +81,56 @@ TEST(StaticMap, KeepsToItsMemoryAndLosesNothing) {
   ASSERT_EQ(bounded.size(), whole.size());
   for (std::size_t i = 0; i < whole.size(); ++i) EXPECT_LT((bounded[i] - whole[i]).norm(), 1e-4F);
   EXPECT_EQ(std::distance(fs::directory_iterator(directory.path()), fs::directory_iterator()), 2) << "files are left";
+}
+
+TEST(StaticMap, BeginsNearAFarDrive) {
+  const test::TemporaryDirectory directory;
+  const fs::path file = directory.path() / "map.pcd";
+  const Eigen::Vector3d utm(500123.4, 5400567.8, 120.0);
+  StaticMap map(file, 0.1, 1000000);
+  map.add(utm);
+  map.add(utm + Eigen::Vector3d(0.3, -70.0, 1.0));  // in another tile
+  EXPECT_EQ(map.write(), 2U);
+  EXPECT_EQ(map.origin(), Eigen::Vector3d(500000.0, 5401000.0, 0.0));
+  const auto points = readPcd(file);
+  ASSERT_EQ(points.size(), 2U);
+  const Eigen::Vector3f expected = (utm - map.origin()).cast<float>();
+  EXPECT_LT((points[0] - expected - Eigen::Vector3f(0.3F, -70.0F, 1.0F)).norm(), 1e-3F);
+  EXPECT_LT((points[1] - expected).norm(), 1e-3F);
+}
+
+/// Two clumps of voxels 200 m apart, the first of which is put away.
+void fillTwice(StaticMap& map) {
+  for (int i = 0; i < 200; ++i) map.add({0.1 * i + 0.05, 0.0, 0.0});
+  for (int i = 0; i < 200; ++i) map.add({200.05 + 0.1 * i, 0.0, 0.0});
+  map.settle({210.0, 0.0, 0.0});
+}
+
+TEST(StaticMap, IsEmptyOnceItIsWritten) {
+  const test::TemporaryDirectory directory;
+  StaticMap map(directory.path() / "map.pcd", 0.1, 1000);
+  fillTwice(map);
+  EXPECT_GT(map.tilesPutAway(), 0U);
+  EXPECT_EQ(map.write(), 400U);
+  EXPECT_EQ(map.write(), 0U);
+}
+
+TEST(StaticMap, AnothersLeftoversAreNotItsOwn) {
+  const test::TemporaryDirectory directory;
+  const fs::path file = directory.path() / "map.pcd";
+  const auto stale = directory.path() / ("map.pcd." + std::to_string(getpid()) + ".0_0.part");
+  std::ofstream(stale) << std::string(24, 'x');
+  StaticMap map(file, 0.1, 1000);
+  fillTwice(map);
+  EXPECT_EQ(map.write(), 400U);
+}
+
+TEST(StaticMap, SaysWhatWasTakenFromIt) {
+  const test::TemporaryDirectory directory;
+  StaticMap map(directory.path() / "map.pcd", 0.1, 1000);
+  fillTwice(map);
+  for (const auto& entry : fs::directory_iterator(directory.path())) fs::resize_file(entry.path(), 30);
+  EXPECT_THROW(map.write(), DataError);
 }
 
 TEST(StaticMap, SaysWhatItCannotWrite) {

@@ -139,6 +139,10 @@ TEST_F(Programs, CompareRefusesWhatItCannotRun) {
   expect(2, "--out is required", DONEX_COMPARE, "seq");
   expect(2, "there is no method donex, only donex_3d, ", DONEX_COMPARE, "seq --out out --methods donex");
   expect(1, "none: is not a directory", DONEX_COMPARE, "seq none --out out");
+  fs::remove(path("seq/times.txt"));
+  const std::string order = "--out few --frames 3 --skip-table-1 --methods paper_2d,paper_3d seq";
+  const Outcome few = expect(0, "few/report.html", DONEX_COMPARE, order);
+  EXPECT_NE(few.text.find("times.txt: is missing"), std::string::npos) << few.text;
   fs::remove_all(path("seq/labels"));
   expect(1, "seq/labels: holds no labels to score by", DONEX_COMPARE, "seq --out out");
 }
@@ -165,6 +169,7 @@ TEST_F(Programs, MapIsBuiltFromABag) {
   expect(0, "8 scans, ", DONEX_MAP, "in.bag map.pcd --method peopleremover");
   expect(1, "in.bag: no cloud on /points has a field label", DONEX_MAP, "in.bag other.pcd --compare");
   EXPECT_FALSE(fs::exists(path("other.pcd")));
+  expect(2, "--points and --odom are for bags", DONEX_MAP, "seq map.pcd --points /points");
   expect(2, "--frames is for sequences", DONEX_MAP, "in.bag map.pcd --frames 3");
 }
 

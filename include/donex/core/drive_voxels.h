@@ -60,7 +60,7 @@ class DriveVoxels {
     const auto found = blocks_.find(keyOf(block));
     if (found == blocks_.end()) return;
     for (const VoxelKey key : found->second) {
-      const Index3 voxel = voxelOfKey(key);
+      const Index3 voxel = voxelOfKey(key, low);
       const bool is_inside = (voxel.array() >= low.array()).all() && (voxel.array() < high.array()).all();
       if (is_inside) visit(voxel, voxels_.at(key));
     }

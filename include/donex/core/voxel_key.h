@@ -7,7 +7,7 @@
 
 namespace donex {
 
-/// 21 bits an axis: indices from -2^20 to 2^20 - 1, at 0.2 m some 200 km to each side.
+/// 21 bits an axis: unique within 2^21 voxels, at 0.2 m some 400 km; farther indices share keys.
 using VoxelKey = std::uint64_t;
 
 inline VoxelKey keyOf(const Index3& voxel) {
@@ -15,9 +15,13 @@ inline VoxelKey keyOf(const Index3& voxel) {
   return part(voxel.x()) | part(voxel.y()) << 21U | part(voxel.z()) << 42U;
 }
 
-inline Index3 voxelOfKey(VoxelKey key) {
-  const auto part = [](VoxelKey bits) { return static_cast<int>(bits & 0x1FFFFFU) - (1 << 20); };
-  return {part(key), part(key >> 21U), part(key >> 42U)};
+/// The voxel of that key which lies less than 2^20 voxels from `near` along each axis.
+inline Index3 voxelOfKey(VoxelKey key, const Index3& near) {
+  const auto part = [](VoxelKey bits, int around) {
+    const auto ahead = static_cast<int>((bits - static_cast<VoxelKey>(around)) & 0x1FFFFFU);  // 0 to 2^21 - 1
+    return around - (1 << 20) + ahead;
+  };
+  return {part(key, near.x()), part(key >> 21U, near.y()), part(key >> 42U, near.z())};
 }
 
 /// Neighbouring voxels differ in few bits, so the bits are mixed (the finaliser of MurmurHash3).

@@ -67,8 +67,8 @@ class Evaluation {
   void add(std::size_t scan_index, const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint32_t>& truth,
            const std::vector<std::uint32_t>& prediction);
 
-  /// The same; `speed_of` tells an instance's speed [m/s], or nothing, and fills bySpeed.
-  using SpeedOf = std::function<std::optional<double>(std::uint32_t instance)>;
+  /// The same; `speed_of` tells the speed of a label's instance [m/s], or nothing, and fills bySpeed.
+  using SpeedOf = std::function<std::optional<double>(std::uint32_t label)>;
   void add(std::size_t scan_index, const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint32_t>& truth,
            const std::vector<std::uint32_t>& prediction, const SpeedOf& speed_of);
 
@@ -105,9 +105,9 @@ std::string className(std::uint32_t label);
 struct RunFigures {
   std::string method;  ///< and its settings, in words
   std::size_t scans = 0;
-  double median_time = 0.0, p99_time = 0.0, median_cpu_time = 0.0;  ///< a scan [s]
-  double mean_cpu_time = 0.0;                                       ///< a scan, all passes [s]
-  std::size_t peak_memory = 0, method_memory = 0;                   ///< of the process, of the method alone [bytes]
+  double median_time = 0.0, p99_time = 0.0, median_cpu_time = 0.0;  ///< a scan [s]; CPU 0: not measured
+  double mean_cpu_time = 0.0;                                       ///< a scan, all passes [s]; 0: not measured
+  std::size_t peak_memory = 0, method_memory = 0;  ///< of the process, of the method alone (0: not known) [bytes]
 };
 
 /// A column of the tables below.

@@ -23,7 +23,7 @@ class MapScore {
   void add(const Eigen::Vector3d& point, bool is_moving, bool is_kept);
 
   struct Rates {
-    double preservation = 0.0, rejection = 0.0, f1 = 0.0;  ///< PR, RR; NaN where there is no such voxel
+    double preservation = 0.0, rejection = 0.0, f1 = 0.0;                    ///< PR, RR; NaN where undefined
     double static_accuracy = 0.0, dynamic_accuracy = 0.0, associated = 0.0;  ///< SA, DA, AA
     std::uint64_t static_voxels = 0, dynamic_voxels = 0;
     std::uint64_t static_echoes = 0, dynamic_echoes = 0;

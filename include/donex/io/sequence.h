@@ -45,6 +45,8 @@ class SequenceReader {
 
   std::size_t size() const { return poses_.size(); }
   const std::filesystem::path& directory() const { return directory_; }
+  /// Its directory's own name, however that was spelled.
+  std::string name() const;
   double stamp(std::size_t index) const { return stamps_.at(index); }
   /// odom_from_sensor; with calib.txt Tr^-1 * camera pose * Tr.
   const Pose& pose(std::size_t index) const { return poses_.at(index); }
@@ -94,6 +96,9 @@ class SequenceWriter {
   std::size_t size_ = 0;
   double last_stamp_ = 0.0;
 };
+
+/// More echoes than any scan has: a file so large is none.
+constexpr std::size_t kMostEchoes = 100000000;
 
 /// kLabelMoving where dynamic, kLabelStatic elsewhere.
 std::vector<std::uint32_t> asSemanticKitti(const EchoLabels& labels);

@@ -1,8 +1,10 @@
 // A map of static echoes: one point a voxel, in bounded memory, as a PCD file.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -26,15 +28,19 @@ class StaticMap {
   StaticMap(const StaticMap&) = delete;
   StaticMap& operator=(const StaticMap&) = delete;
 
-  /// A point of the odometry frame [m], at most 200 km from its origin at 0.2 m voxels.
-  void add(const Eigen::Vector3d& point);
+  /// A point of the odometry frame [m], at most 200 km from the first one at 0.2 m voxels.
+  void add(const Eigen::Vector3d& in_odom);
 
   /// Keeps to the limit; call once a scan. Throws DataError where a file cannot be written.
   void settle(const Eigen::Vector3d& vehicle);
 
-  /// Writes x, y, z as binary float32, whole or not at all; the map is empty then. Returns how many points.
-  /// Throws DataError.
+  /// Writes x, y, z from origin() as binary float32, whole or not at all; the map is empty then. Returns how many
+  /// points. Throws DataError.
   std::size_t write();
+
+  /// Where in the odometry frame the map's coordinates begin [m]: at its origin, or, where the first point is more than
+  /// 10 km from that (UTM), at whole kilometres near it; float32 would not tell such points apart.
+  Eigen::Vector3d origin() const { return origin_.value_or(Eigen::Vector3d::Zero()); }
 
   std::size_t memoryBytes() const { return voxels_ * kBytesAVoxel; }
   std::size_t tilesPutAway() const { return put_away_.size(); }
@@ -55,14 +61,16 @@ class StaticMap {
   std::filesystem::path fileOf(const TileIndex& index) const;
   void putAway(const TileIndex& index);
   void takeBack(const TileIndex& index, Tile& tile) const;
-  std::size_t writeTile(Tile& tile, std::ostream& stream) const;
+  std::size_t writeTile(const TileIndex& index, const Tile& tile, std::ostream& stream) const;
+  void removePutAway();
 
   std::filesystem::path file_;
   double voxel_size_;
+  std::optional<Eigen::Vector3d> origin_;  ///< once there is a point
   std::size_t memory_limit_;
   std::size_t voxels_ = 0;  ///< in memory
   std::map<TileIndex, Tile> tiles_;
-  std::map<TileIndex, std::size_t> put_away_;  ///< how often
+  std::map<TileIndex, std::size_t> put_away_;  ///< how many voxels
 };
 
 }  // namespace donex
