@@ -1,5 +1,6 @@
-// Times a scan of every method beside the floor and the naive traversal, all in one run (Google Benchmark's options
-// apply: --benchmark_filter, --benchmark_out). scripts/benchmark makes tables and plots of what it writes.
+// Times a scan of both grids, by the paper's rule and as by default, beside the floor and the naive traversal, all in
+// one run (Google Benchmark's options apply: --benchmark_filter, --benchmark_out). scripts/benchmark makes tables and
+// plots of what it writes.
 #include <benchmark/benchmark.h>
 
 #include "register.h"

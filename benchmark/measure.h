@@ -2,7 +2,6 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 
 #include <benchmark/benchmark.h>
 
@@ -21,13 +20,14 @@ struct Measured {
 Measured measure(const Scans& scans, int rounds, const std::function<void(const Scan&)>& work);
 
 /// The body of a benchmark: every iteration is one scan through `detector`, which starts anew when the scans are
-/// at their end (untimed, with the first two again). Adds counters: median, p99, wall [ms], memory [MB].
+/// at their end (untimed, with the first two again). Adds the counters of report(), memory_MB and echoes.
 Measured timeDetector(::benchmark::State& state, Detector& detector, const Scans& scans);
 
-/// Adds the counters median, p99, least and wall [ms].
+/// Adds the counters median_ms, p99_ms, least_ms and wall_ms.
 void report(::benchmark::State& state, const Measured& measured);
 
-/// Adds the counters `floor` [ms] and `of_floor`, and with a naive reference `naive` [ms] and `naive_over_this`.
+/// Adds the counters floor_ms and of_floor (a ratio of medians) and least_of_floor (of the least times, which other
+/// load disturbs less); with a naive reference naive_ms, naive_over_this and least_naive_over_this.
 void compare(::benchmark::State& state, const Measured& measured, const Measured& floor, const Measured* naive);
 
 }  // namespace donex::benchmark

@@ -1,5 +1,6 @@
 #include "references.h"
 
+#include <cmath>
 #include <map>
 #include <string>
 #include <tuple>

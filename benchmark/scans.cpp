@@ -1,5 +1,6 @@
 #include "scans.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -10,7 +11,7 @@ namespace donex::benchmark {
 namespace {
 
 constexpr std::size_t kScans = 12;
-constexpr double kAzimuthStep = 0.0031;  // [rad] of the simulated sensor, about
+constexpr double kAzimuthStep = 0.0031;  // [rad] a little less than the simulated sensor's
 
 /// Every `thin`-th echo, `copies` times side by side.
 Scan resampled(const Scan& scan, std::size_t thin, std::size_t copies) {

@@ -5,6 +5,8 @@
 
 #include "donex/ros/cloud_layout.h"
 #include "ros/cloud_builder.h"
+#include "ros/pipeline_rig.h"
+#include "support/counted_allocations.h"
 
 namespace donex {
 namespace {
@@ -79,6 +81,7 @@ TEST(CloudLayout, truncatedData) {
 
 TEST(CloudLayout, claimsOfBillionsAreRefusedWithoutAllocating) {
   constexpr std::uint32_t kMax = std::numeric_limits<std::uint32_t>::max();
+  testing::takeLargest();
   auto wide = good();
   wide->width = kMax;
   expectFault(*wide, LayoutFault::kRowTooShort, "4294967295");
@@ -94,6 +97,12 @@ TEST(CloudLayout, claimsOfBillionsAreRefusedWithoutAllocating) {
   wrapping_row->width = 1U << 30;
   wrapping_row->row_step = 0;
   expectFault(*wrapping_row, LayoutFault::kRowTooShort, "1073741824 points");
+  EXPECT_LT(testing::takeLargest(), 10000U);
+  test::PipelineRig rig;
+  testing::takeLargest();
+  for (const auto& cloud : {wide, high, wrapping, wrapping_row}) rig.pipeline.addCloud(cloud, 0.0);
+  EXPECT_EQ(rig.pipeline.counts().dropped.of(DropReason::kBadLayout), 4U);
+  EXPECT_LT(testing::takeLargest(), 10000U);
 }
 
 TEST(CloudLayout, labelledCloudMustFitToo) {

@@ -1,14 +1,14 @@
 #include "support/counted_allocations.h"
 
-#include <malloc.h>
-
 #include <atomic>
 #include <cstdlib>
 #include <new>
 
+#include <malloc.h>
+
 namespace {
 
-std::atomic<std::size_t> count{0}, bytes{0};
+std::atomic<std::size_t> count{0}, bytes{0}, largest{0};
 
 }  // namespace
 
@@ -16,10 +16,14 @@ namespace donex::testing {
 
 std::size_t allocations() { return count; }
 std::size_t liveBytes() { return bytes; }
+std::size_t takeLargest() { return largest.exchange(0); }
 
 }  // namespace donex::testing
 
 void* operator new(std::size_t size) {
+  std::size_t before = largest;
+  while (before < size && !largest.compare_exchange_weak(before, size)) {
+  }
   void* memory = std::malloc(size);
   if (memory == nullptr) throw std::bad_alloc();
   ++count;

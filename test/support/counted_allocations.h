@@ -7,5 +7,6 @@ namespace donex::testing {
 
 std::size_t allocations();  ///< so far
 std::size_t liveBytes();    ///< allocated and not given back, as the allocator rounds them
+std::size_t takeLargest();  ///< the most bytes asked for at once since the last call
 
 }  // namespace donex::testing
