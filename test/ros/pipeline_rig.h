@@ -64,6 +64,7 @@ struct Labeled {
   Eigen::Isometry3d odom_from_base, base_from_sensor;
   std::vector<Eigen::Vector3f> echoes;
   EchoLabels labels;
+  sensor_msgs::PointCloud2ConstPtr published;
 };
 
 class PipelineRig {
@@ -98,8 +99,8 @@ class PipelineRig {
   PipelineEvents events() {
     PipelineEvents events;
     events.labeled = [this](const LabeledScan& scan) {
-      labeled.push_back(
-          {scan.scan.stamp, scan.scan.odom_from_base, scan.scan.base_from_sensor, scan.scan.echoes, scan.labels});
+      labeled.push_back({scan.scan.stamp, scan.scan.odom_from_base, scan.scan.base_from_sensor, scan.scan.echoes,
+                         scan.labels, labelCloud(*scan.cloud, scan.layout, scan.labels)});
     };
     events.dropped = [this](DropReason, const std::string& text) { drops.push_back(text); };
     events.refused = [this](OdometryRefusal, const std::string& text) { refusals.push_back(text); };
