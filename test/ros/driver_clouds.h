@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -91,6 +92,13 @@ inline const std::vector<DriverCloud>& driverClouds() {
       // livox_ros_driver2, xfer_format 0: times in nanoseconds as a double.
       {"livox", livoxFields(), 26, 1, kFirst, "timestamp", 1e9, true, 0.0}};
   return clouds;
+}
+
+inline const DriverCloud& driverNamed(const std::string& name) {
+  for (const DriverCloud& cloud : driverClouds()) {
+    if (cloud.driver == name) return cloud;
+  }
+  throw std::invalid_argument(name);
 }
 
 /// The driver's layout with `echoes` points (a multiple of its rows), every byte a pattern.

@@ -39,13 +39,6 @@ const std::multimap<std::string, std::string> kDriverOf{
     {"hap", "livox"},
 };
 
-const DriverCloud& driverNamed(const std::string& name) {
-  for (const DriverCloud& cloud : test::driverClouds()) {
-    if (cloud.driver == name) return cloud;
-  }
-  throw std::invalid_argument(name);
-}
-
 /// When ray `i` was fired, after the scan's start [s].
 double firedAfter(std::size_t i) { return kTurn * static_cast<double>(i) / (kEchoes - 1); }
 
@@ -109,7 +102,7 @@ TEST(Sensors, everyFileIsTriedWithItsDriver) {
 TEST(Sensors, scansAreStraightened) {
   for (const auto& [sensor, name] : kDriverOf) {
     SCOPED_TRACE(sensor + ", " + name);
-    const DriverCloud& driver = driverNamed(name);
+    const DriverCloud& driver = test::driverNamed(name);
     PipelineRig rig(configFor(sensor));
     for (int i = -30; i < 30; ++i) rig.pipeline.addOdometry(odometryAfter(0.01 * i));
     rig.pipeline.addCloud(distortedScan(driver), stampOf(driver));
@@ -124,17 +117,20 @@ TEST(Sensors, theDriversBytesAndFieldsAreKept) {
   for (const DriverCloud& driver : test::driverClouds()) {
     SCOPED_TRACE(driver.driver);
     const auto cloud = distortedScan(driver);
-    ASSERT_EQ(cloud->point_step, driver.point_step);
-    const CloudLayout layout = std::get<CloudLayout>(judgeLayout(*cloud));
-    EchoLabels labels;
-    labels.assign(kEchoes);
-    const auto out = labelCloud(*cloud, layout, labels);
-    ASSERT_EQ(out->fields.size(), cloud->fields.size() + 2);
-    EXPECT_TRUE(std::equal(cloud->fields.begin(), cloud->fields.end(), out->fields.begin()));
+    const PointCloud2 sent = *cloud;
+    ASSERT_EQ(sent.point_step, driver.point_step);
+    PipelineRig rig;
+    for (int i = -30; i < 30; ++i) rig.pipeline.addOdometry(odometryAfter(0.01 * i));
+    rig.pipeline.addCloud(cloud, stampOf(driver));
+    rig.run(stampOf(driver));
+    ASSERT_EQ(rig.labeled.size(), 1U) << (rig.drops.empty() ? "" : rig.drops[0]);
+    const auto out = rig.labeled[0].published;
+    EXPECT_TRUE(*cloud == sent) << "other subscribers have the same object";
+    ASSERT_EQ(out->fields.size(), sent.fields.size() + 2);
+    EXPECT_TRUE(std::equal(sent.fields.begin(), sent.fields.end(), out->fields.begin()));
     EXPECT_EQ(out->height, driver.rows);
     for (std::size_t i = 0; i < kEchoes; ++i) {
-      ASSERT_EQ(std::memcmp(&cloud->data[i * cloud->point_step], &out->data[i * out->point_step], cloud->point_step),
-                0);
+      ASSERT_EQ(std::memcmp(&sent.data[i * sent.point_step], &out->data[i * out->point_step], sent.point_step), 0);
     }
   }
 }
@@ -149,20 +145,57 @@ TEST(Sensors, aDriverWithoutTimesIsToldOf) {
   EXPECT_NE(rig.strange_times[0].find("'timestamp'"), std::string::npos) << rig.strange_times[0];
 }
 
-/// Two LiDARs' clouds merged into the vehicle's frame: what hides behind the wall in front of the sensor that is
-/// named stays unobserved only if lines of sight begin at it.
-TEST(Sensors, linesOfSightBeginAtTheConfiguredOrigin) {
+/// Two LiDARs' clouds merged into one frame, 1.7 m above the vehicle's and 0.5 m before it; the one that is named sits
+/// 4 m to the left of that frame's origin, in front of a wall. `far` is seen past the wall.
+constexpr double kNamedOrigin = 4.0;                      // [m]
+const Eigen::Vector3f kBehindTheWall(8.0F, 4.0F, 0.0F);   // on the line from the frame's origin to `far`
+const Eigen::Vector3f kBesideTheWall(8.0F, 5.33F, 0.0F);  // on the line from the named origin to `far`
+
+std::vector<Eigen::Vector3f> wallAndFar() {
+  std::vector<Eigen::Vector3f> echoes;
+  for (int i = -5; i <= 5; ++i) {
+    const float aside = 0.1F * static_cast<float>(i);
+    echoes.emplace_back(5.0F, 4.0F + aside, 0.0F);
+    echoes.emplace_back(12.0F, 6.0F + aside, 0.0F);
+  }
+  return echoes;
+}
+
+/// Scans of wall and far, then one more with echoes behind and beside the wall, which come last.
+test::Labeled lastOfMergedScans(const CloudConfig& cloud) {
+  constexpr int kScans = 8;
   Config config = test::smallConfig();
-  config.cloud.origin_x = 2.0;
-  config.cloud.origin_z = 1.7;
+  config.cloud = cloud;
+  config.evidence.ground = false;
   PipelineRig rig(config, false);
-  rig.tf.setTransform(test::transformAt(0.0, "base_link", "merged", 0.5), "test", true);
-  rig.odometry(100.0);
-  rig.pipeline.addCloud(test::plainCloud({{5.0F, 1.0F, 1.7F}}, 100.0, "merged"), 100.0);
-  rig.run(100.0);
-  ASSERT_EQ(rig.labeled.size(), 1U);
-  EXPECT_TRUE(rig.labeled[0].base_from_sensor.translation().isApprox(Eigen::Vector3d(2.5, 0.0, 1.7)));
-  EXPECT_TRUE(rig.labeled[0].echoes[0].isApprox(Eigen::Vector3f(3.0F, 1.0F, 0.0F)));
+  rig.tf.setTransform(test::transformAt(0.0, "base_link", "merged", 0.5, 1.7), "test", true);
+  auto echoes = wallAndFar();
+  for (int i = 0; i <= kScans; ++i) {
+    const double stamp = 100.0 + 0.1 * i;
+    if (i == kScans) echoes.insert(echoes.end(), {kBehindTheWall, kBesideTheWall});
+    rig.odometry(stamp);
+    rig.pipeline.addCloud(test::plainCloud(echoes, stamp, "merged"), stamp);
+    rig.run(stamp);
+  }
+  EXPECT_EQ(rig.labeled.size(), kScans + 1U);
+  return rig.labeled.back();
+}
+
+TEST(Sensors, linesOfSightBeginAtTheConfiguredOrigin) {
+  CloudConfig cloud;
+  cloud.origin_y = kNamedOrigin;
+  const test::Labeled scan = lastOfMergedScans(cloud);
+  EXPECT_TRUE(scan.base_from_sensor.translation().isApprox(Eigen::Vector3d(0.5, kNamedOrigin, 1.7)));
+  const Eigen::Vector3f moved = kBesideTheWall - Eigen::Vector3f(0.0F, static_cast<float>(kNamedOrigin), 0.0F);
+  EXPECT_TRUE(scan.echoes.back().isApprox(moved));
+  EXPECT_EQ(*(scan.labels.observed.end() - 2), 0) << "behind the wall nothing was seen free";
+  EXPECT_EQ(scan.labels.observed.back(), 1) << "the sensor saw past the wall";
+}
+
+TEST(Sensors, linesOfSightBeginInTheFramesOriginUnlessToldOtherwise) {
+  const test::Labeled scan = lastOfMergedScans({});
+  EXPECT_EQ(*(scan.labels.observed.end() - 2), 1) << "from there it is in front of what is far";
+  EXPECT_EQ(scan.labels.observed.back(), 0) << "from there nobody looked past it";
 }
 
 /// Several LiDARs on one topic: each cloud's lines of sight begin where its own frame is.
