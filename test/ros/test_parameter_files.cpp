@@ -1,7 +1,10 @@
 // Code, config/*.yaml and cfg/Donex.cfg say the same.
+#include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <map>
+#include <regex>
 #include <sstream>
 #include <type_traits>
 
@@ -71,6 +74,34 @@ TEST(ParameterFiles, paperFilesSwitchEveryStepOff) {
     const Config config = readConfigFile(kPackage + "/config/" + name + ".yaml");
     EXPECT_TRUE(config.isPaper()) << name;
     EXPECT_EQ(namesOf(config.method)[static_cast<std::size_t>(config.method)], "donex_" + name.substr(6));
+  }
+}
+
+/// The names that a file sets, line by line.
+std::vector<std::string> namesIn(const std::filesystem::path& file) {
+  static const std::regex assignment("([a-z_0-9]+):.*");
+  std::vector<std::string> names;
+  std::istringstream lines(contentOf(file));
+  for (std::string line; std::getline(lines, line);) {
+    std::smatch parts;
+    if (std::regex_match(line, parts, assignment)) names.push_back(parts[1]);
+  }
+  return names;
+}
+
+/// Whatever a file for one sensor or one use repeats of default.yaml would stay behind when a default changes.
+TEST(ParameterFiles, filesForOneUseNameOnlyWhatDiffersFromTheDefaults) {
+  std::vector<std::filesystem::path> files{kPackage + "/config/at_rest.yaml", kPackage + "/config/sparse.yaml"};
+  for (const auto& entry : std::filesystem::directory_iterator(kPackage + "/config/sensors")) files.push_back(entry);
+  ASSERT_GT(files.size(), 10U);
+  const auto defaults = valuesOf({});
+  for (const std::filesystem::path& file : files) {
+    const auto values = valuesOf(readConfigFile(file));
+    const auto names = namesIn(file);
+    EXPECT_FALSE(names.empty()) << file;
+    for (const std::string& name : names) EXPECT_NE(values.at(name), defaults.at(name)) << file << ": " << name;
+    const auto differs = [&](const auto& value) { return value.second != defaults.at(value.first); };
+    EXPECT_EQ(static_cast<std::size_t>(std::count_if(values.begin(), values.end(), differs)), names.size()) << file;
   }
 }
 
