@@ -108,42 +108,6 @@ TEST_F(Faults, mountingIsMissing) {
   conclude("clouds in a frame that tf does not know");
 }
 
-TEST_F(Faults, cloudsFasterThanTheyCanBeProcessed) {
-  load();
-  driveWell();
-  const std::size_t before = received_.size();
-  constexpr int kBurst = 80;
-  const double first = now_;
-  sendOdometry(first + kBurst * 1e-3);
-  for (int i = 1; i <= kBurst; ++i) sendCloud(first + i * 1e-3);
-  setClock(first + kPeriod + kBurst * 1e-3);
-  ASSERT_TRUE(waitFor([&] { return hasLabeled(first + kBurst * 1e-3); })) << "the newest wins: " << status_;
-  EXPECT_LT(received_.size() - before, static_cast<std::size_t>(kBurst));
-  recover();
-  EXPECT_TRUE(
-      waitFor([this] { return !diagnostic("dropped: queue full").empty() && count("dropped: queue full") > 0; }));
-  conclude("80 clouds at once: the newest are labelled");
-}
-
-TEST_F(Faults, fiveHundredCloudsWhileOneIsJudged) {
-  load();
-  driveWell();
-  constexpr int kBurst = 500;
-  const double first = now_ + 0.001, newest = first + kBurst * 1e-4;
-  sendOdometry(newest);
-  ++clouds_sent_;
-  clouds_.publish(test::plainCloud(test::ring(500000), first));
-  std::vector<sensor_msgs::PointCloud2ConstPtr> burst;
-  for (int i = 1; i <= kBurst; ++i) burst.push_back(test::plainCloud(test::ring(), first + i * 1e-4));
-  for (const auto& cloud : burst) clouds_.publish(cloud);
-  clouds_sent_ += burst.size();
-  burst.clear();
-  setClock(first + kPeriod);
-  ASSERT_TRUE(waitFor([&] { return hasLabeled(newest); })) << "the newest wins: " << status_;
-  recover();
-  conclude("500 clouds while one scan is judged: the newest are labelled");
-}
-
 TEST_F(Faults, unreadableClouds) {
   load();
   driveWell();

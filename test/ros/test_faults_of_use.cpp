@@ -110,8 +110,11 @@ TEST_F(OtherProcess, managerKilledAndRestarted) {
   EXPECT_TRUE(WIFSIGNALED(end(SIGKILL)));
   waitUntilGone();
   drive(3);
+  // Nothing that the first one said may count for the second.
   clouds_sent_ = 0;
   received_.clear();
+  values_.clear();
+  status_.clear();
   start(manager);
   waitUntilConnected();
   recover();
@@ -132,36 +135,31 @@ TEST_F(OtherProcess, interruptedInTheMiddleOfAScan) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
   waitUntilGone();
   if (!HasFailure()) {
-    test::FaultTable::instance().add("SIGINT in the middle of a scan", "nothing dropped",
-                                     "ends at once with exit code 0");
+    test::FaultTable::instance().add("SIGINT in the middle of a scan, to the classifier as a node of its own",
+                                     "not asked: the process is gone", "ends with exit code 0");
   }
 }
 
+/// The last test: rostest counts tests and ignores exit codes.
+TEST(TableOfFaults, isTheReadmes) {
+  const testing::UnitTest& run = *testing::UnitTest::GetInstance();
+  if (run.test_to_run_count() != run.total_test_count()) GTEST_SKIP() << "only with all rows";
+  if (run.failed_test_count() != 0) GTEST_SKIP() << "only with all rows, and some test failed";
+  const std::string table = test::FaultTable::instance().text();
+  test::FaultTable::instance().write(DONEX_FAULT_TABLE);
+  std::ifstream file(DONEX_README);
+  const std::string readme((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  EXPECT_NE(readme.find(table), std::string::npos)
+      << "the README shows another table: scripts/fault_table " << DONEX_FAULT_TABLE << "\n"
+      << table;
+}
+
 }  // namespace
-
-/// After all tests: the table they wrote is the README's.
-class TableIsTheReadmes : public testing::Environment {
- public:
-  void TearDown() override {
-    const bool ran_all =
-        testing::UnitTest::GetInstance()->test_to_run_count() == testing::UnitTest::GetInstance()->total_test_count();
-    if (!ran_all || testing::UnitTest::GetInstance()->failed_test_count() != 0) return;
-    const std::string table = test::FaultTable::instance().text();
-    test::FaultTable::instance().write(DONEX_FAULT_TABLE);
-    std::ifstream file(DONEX_README);
-    const std::string readme((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-    EXPECT_NE(readme.find(table), std::string::npos)
-        << "the README shows another table: scripts/fault_table " << DONEX_FAULT_TABLE << "\n"
-        << table;
-  }
-};
-
 }  // namespace donex
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   ros::init(argc, argv, "faults_test");
   ros::NodeHandle keep_alive;
-  testing::AddGlobalTestEnvironment(new donex::TableIsTheReadmes);
   return RUN_ALL_TESTS();
 }
