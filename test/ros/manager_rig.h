@@ -39,12 +39,16 @@ class ManagerTest : public testing::Test {
     odometry_ = nh_.advertise<nav_msgs::Odometry>("odom", 2000);
     diagnostics_ = nh_.subscribe("/diagnostics", 50, &ManagerTest::onDiagnostics, this);
     transforms_.sendTransform(transformAt(0.0, "base_link", "lidar", 0.0, 1.7));
-    // A small grid: quick to build. What an earlier run left behind must not count.
-    ros::param::del(nodeName());
-    for (const auto* name : {"x_min", "y_min"}) ros::param::set(nodeName() + "/" + name, -15.0);
-    for (const auto* name : {"x_max", "y_max"}) ros::param::set(nodeName() + "/" + name, 15.0);
+    setUpSmall(nodeName());
   }
   ~ManagerTest() override { manager_.clear(); }
+
+  /// A small grid: quick to build. What an earlier run left behind must not count.
+  static void setUpSmall(const std::string& node) {
+    ros::param::del(node);
+    for (const auto* name : {"x_min", "y_min"}) ros::param::set(node + "/" + name, -15.0);
+    for (const auto* name : {"x_max", "y_max"}) ros::param::set(node + "/" + name, 15.0);
+  }
 
   /// Loads the classifier and waits until it is connected.
   void load() {
@@ -63,6 +67,17 @@ class ManagerTest : public testing::Test {
   void send(double stamp) {
     sendOdometry(stamp);
     sendCloud(stamp);
+  }
+  /// The paper's rule alone: whatever is new is dynamic at once, also a single echo.
+  static void usePapersRule(const std::string& node) {
+    for (const auto* step :
+         {"free_evidence", "careful_sight", "birth_age", "neighbourhood", "ground", "objects", "object_motion"})
+      ros::param::set(node + "/" + step, false);
+  }
+  /// Where the lines of sight to the usual ring have been: new, unless the grid is.
+  void sendInside(double stamp) {
+    sendOdometry(stamp);
+    clouds_.publish(plainCloud(ring(36, kInside), stamp));
   }
   bool waitForLabeled(std::size_t count) {
     return waitFor([&] { return received_.size() >= count; });

@@ -1,8 +1,6 @@
 // The nodelet in a manager, with everything that happens to it while data flows.
 #include <donex/MovingObjects.h>
-#include <dynamic_reconfigure/Reconfigure.h>
 #include <std_srvs/Trigger.h>
-#include <visualization_msgs/MarkerArray.h>
 
 #include "ros/manager_rig.h"
 
@@ -16,50 +14,6 @@ using test::waitFor;
 
 class Manager : public ManagerTest {
  protected:
-  /// What the server shows after it was asked for these values.
-  dynamic_reconfigure::Config change(const std::function<void(dynamic_reconfigure::Config&)>& fill) {
-    dynamic_reconfigure::Reconfigure call;
-    fill(call.request.config);
-    EXPECT_TRUE(ros::service::call(nodeName() + "/set_parameters", call));
-    return call.response.config;
-  }
-  dynamic_reconfigure::Config changeNumber(const std::string& name, double value) {
-    return change([&](dynamic_reconfigure::Config& config) {
-      config.doubles.resize(1);
-      config.doubles[0].name = name;
-      config.doubles[0].value = value;
-    });
-  }
-  dynamic_reconfigure::Config changeText(const std::string& name, const std::string& value) {
-    return change([&](dynamic_reconfigure::Config& config) {
-      config.strs.resize(1);
-      config.strs[0].name = name;
-      config.strs[0].value = value;
-    });
-  }
-  static double numberIn(const dynamic_reconfigure::Config& config, const std::string& name) {
-    for (const auto& parameter : config.doubles) {
-      if (parameter.name == name) return parameter.value;
-    }
-    return std::nan("");
-  }
-  static std::string textIn(const dynamic_reconfigure::Config& config, const std::string& name) {
-    for (const auto& parameter : config.strs) {
-      if (parameter.name == name) return parameter.value;
-    }
-    return "";
-  }
-  /// The paper's rule alone: whatever is new is dynamic at once, also a single echo.
-  void usePapersRule() {
-    for (const auto* step :
-         {"free_evidence", "careful_sight", "birth_age", "neighbourhood", "ground", "objects", "object_motion"})
-      ros::param::set(nodeName() + "/" + step, false);
-  }
-  /// Where the lines of sight to the usual ring have been: new, unless the grid is.
-  void sendInside(double stamp) {
-    sendOdometry(stamp);
-    clouds_.publish(test::plainCloud(test::ring(36, test::kInside), stamp));
-  }
   static void expectDynamic(const sensor_msgs::PointCloud2& cloud, bool dynamic) {
     for (std::size_t i = 0; i < cloud.width; ++i) EXPECT_EQ(test::labelOf(cloud, "dynamic", i), dynamic ? 1 : 0);
   }
@@ -126,9 +80,11 @@ TEST_F(Manager, missingTransformIsTold) {
 }
 
 TEST_F(Manager, lateOdometryLosesNothing) {
+  ros::param::set(nodeName() + "/odometry_timeout", 10.0);
   load();
   for (int i = 0; i < 8; ++i) sendCloud(100.0 + 0.1 * i);
-  ASSERT_TRUE(waitFor([this] { return clouds_.getNumSubscribers() == 1; }));
+  ASSERT_TRUE(waitForDiagnostic("clouds waiting", "8"));
+  EXPECT_TRUE(received_.empty());
   for (int i = 0; i < 8; ++i) sendOdometry(100.0 + 0.1 * i);
   EXPECT_TRUE(waitForLabeled(8));
 }
@@ -148,7 +104,7 @@ TEST_F(Manager, odometryWithFaultsIsCounted) {
 }
 
 TEST_F(Manager, aLoopedBagGoesOn) {
-  usePapersRule();
+  usePapersRule(nodeName());
   load();
   for (std::size_t loop = 0; loop < 2; ++loop) {
     sendInside(100.0);
@@ -161,7 +117,7 @@ TEST_F(Manager, aLoopedBagGoesOn) {
 }
 
 TEST_F(Manager, resetForgetsTheGrid) {
-  usePapersRule();
+  usePapersRule(nodeName());
   load();
   for (int i = 0; i < 9; ++i) send(100.0 + 0.1 * i);
   sendInside(100.9);
@@ -177,47 +133,6 @@ TEST_F(Manager, resetForgetsTheGrid) {
   expectDynamic(*received_[19], false);
 }
 
-TEST_F(Manager, badParametersKeepItFromLoading) {
-  ros::param::set(nodeName() + "/voxel_size", "small");
-  EXPECT_FALSE(tryLoad());
-  ros::param::set(nodeName() + "/voxel_size", 0.3);
-  EXPECT_TRUE(tryLoad());
-}
-
-TEST_F(Manager, refusedValuesLeaveTheOldOnes) {
-  load();
-  EXPECT_EQ(numberIn(changeNumber("voxel_size", 0.4), "voxel_size"), 0.4);
-  EXPECT_EQ(numberIn(changeNumber("voxel_size", 5.0), "voxel_size"), 0.4) << "neither taken nor bent into range";
-  EXPECT_EQ(numberIn(changeNumber("voxel_size", std::nan("")), "voxel_size"), 0.4);
-  EXPECT_EQ(numberIn(changeNumber("x_max", -20.0), "x_max"), 15.0) << "behind x_min";
-  EXPECT_EQ(textIn(changeText("method", "oracle"), "method"), "donex_3d");
-  EXPECT_EQ(textIn(changeText("method", "donex_2d"), "method"), "donex_2d");
-  double on_server = 0.0;
-  EXPECT_TRUE(ros::param::get(nodeName() + "/voxel_size", on_server));
-  EXPECT_EQ(on_server, 0.4);
-}
-
-TEST_F(Manager, changesWhileDataFlowsLoseNoScan) {
-  load();
-  constexpr int kScans = 150;
-  for (int i = 0; i < kScans; ++i) {
-    send(100.0 + 0.1 * i);
-    if (i % 3 != 0) continue;
-    switch (i / 3 % 5) {
-      case 0: changeNumber("voxel_size", i % 2 == 0 ? 0.3 : 0.6); break;
-      case 1: changeNumber("x_max", 10.0 + i % 7); break;
-      case 2: changeText("method", i % 2 == 0 ? "donex_2d" : "donex_3d"); break;
-      case 3: changeNumber("voxel_size", -1.0); break;
-      default: changeText("compensation", i % 2 == 0 ? "scroll" : "resample"); break;
-    }
-    // No more in flight than the queue holds: what is lost is then lost by the change.
-    ASSERT_TRUE(waitForLabeled(static_cast<std::size_t>(std::max(0, i - 5))));
-  }
-  ASSERT_TRUE(waitForLabeled(kScans));
-  ASSERT_TRUE(waitForDiagnostic("clouds labelled", std::to_string(kScans)));
-  EXPECT_EQ(diagnostic("clouds dropped"), "0");
-}
-
 TEST_F(Manager, anOverloadDropsTheOldestAndCountsThem) {
   load();
   for (int i = 0; i < 60; ++i) sendCloud(100.0 + 0.1 * i);
@@ -227,28 +142,6 @@ TEST_F(Manager, anOverloadDropsTheOldestAndCountsThem) {
   ASSERT_TRUE(waitForDiagnostic("clouds waiting", "0"));
   const int labeled = std::stoi(diagnostic("clouds labelled")), dropped = std::stoi(diagnostic("clouds dropped"));
   EXPECT_EQ(labeled + dropped, 60);
-}
-
-TEST_F(Manager, markersComeAndGo) {
-  load();
-  std::set<std::string> shown;
-  const boost::function<void(const visualization_msgs::MarkerArrayConstPtr&)> take = [&](const auto& array) {
-    for (const auto& marker : array->markers) {
-      if (marker.action == visualization_msgs::Marker::ADD) shown.insert(marker.ns);
-      if (marker.action == visualization_msgs::Marker::DELETE) shown.erase(marker.ns);
-    }
-  };
-  auto subscriber = nh_.subscribe<visualization_msgs::MarkerArray>("donex/markers", 20, take);
-  ASSERT_TRUE(waitFor([&] { return subscriber.getNumPublishers() == 1; }));
-  send(100.0);
-  ASSERT_TRUE(waitFor([&] { return shown.count("grid") == 1; }));
-  change([](dynamic_reconfigure::Config& config) {
-    config.bools.resize(1);
-    config.bools[0].name = "markers";
-    config.bools[0].value = 0;
-  });
-  send(100.1);
-  EXPECT_TRUE(waitFor([&] { return shown.empty(); }));
 }
 
 TEST_F(Manager, objectsAreToldScanByScan) {
@@ -285,21 +178,40 @@ TEST_F(Manager, layersForTheEyeComeWhileSomebodyLooks) {
   EXPECT_EQ(shown["shadowed_cells"]->header.frame_id, "odom");
 }
 
+/// Two LiDARs, each with a classifier, a mounting and a cloud of its own: what is new to the one is not to the other.
 TEST_F(Manager, twoLidarsInOneManager) {
-  load();
   const std::string other = nh_.getNamespace() + "/right";
+  setUpSmall(other);
+  for (const std::string& node : {nodeName(), other}) {
+    usePapersRule(node);
+    ros::param::set(node + "/odometry_timeout", 10.0);
+  }
+  load();
+  transforms_.sendTransform(test::transformAt(0.0, "base_link", "lidar_right", 0.5, 1.7));
   const ros::M_string remappings{{nh_.getNamespace() + "/points", other + "_points"}};
   ASSERT_TRUE(manager_.load(other, "donex/DonexNodelet", remappings, {}));
   auto clouds = nh_.advertise<sensor_msgs::PointCloud2>("right_points", 10);
-  std::size_t labeled = 0;
-  const boost::function<void(const sensor_msgs::PointCloud2ConstPtr&)> take = [&](const auto&) { ++labeled; };
+  std::vector<sensor_msgs::PointCloud2ConstPtr> right;
+  const boost::function<void(const sensor_msgs::PointCloud2ConstPtr&)> take = [&](const auto& cloud) {
+    right.push_back(cloud);
+  };
   auto subscriber = nh_.subscribe<sensor_msgs::PointCloud2>("right/labeled_points", 10, take);
   ASSERT_TRUE(waitFor([&] { return clouds.getNumSubscribers() == 1 && subscriber.getNumPublishers() == 1; }));
-  for (int i = 0; i < 5; ++i) {
-    send(100.0 + 0.1 * i);
-    clouds.publish(test::plainCloud(test::ring(), 100.0 + 0.1 * i));
+  for (int i = 0; i < 10; ++i) {
+    const double stamp = 100.0 + 0.1 * i;
+    i < 9 ? send(stamp) : sendInside(stamp);
+    // All along where the other one's lines of sight pass.
+    clouds.publish(test::plainCloud(test::ring(20, test::kInside), stamp, "lidar_right"));
   }
-  EXPECT_TRUE(waitFor([&] { return labeled == 5 && received_.size() == 5; })) << labeled << ", " << received_.size();
+  ASSERT_TRUE(waitFor([&] { return right.size() == 10 && received_.size() == 10; })) << right.size();
+  for (std::size_t i = 0; i < 10; ++i) {
+    ASSERT_EQ(received_[i]->width, 36U);
+    ASSERT_EQ(right[i]->width, 20U);
+    EXPECT_EQ(received_[i]->header.frame_id, "lidar");
+    EXPECT_EQ(right[i]->header.frame_id, "lidar_right");
+    expectDynamic(*received_[i], i == 9);
+    expectDynamic(*right[i], false);
+  }
 }
 
 TEST_F(Manager, canBeUnloadedAndLoadedWhileDataFlows) {
@@ -322,6 +234,45 @@ TEST_F(Manager, theStatusLineSaysWhatIsWrong) {
     if (received_.size() == sent) send(101.0 + 0.1 * static_cast<double>(sent++));
     return status_.find("ms a scan") != std::string::npos;
   })) << status_;
+}
+
+/// A room of 10 m around the sensor, beam by beam; with `somebody` in it, who hides a part of the wall.
+std::vector<Eigen::Vector3f> room(bool somebody) {
+  constexpr float kDegree = 0.017453293F;
+  std::vector<Eigen::Vector3f> echoes;
+  for (int elevation = -12; elevation <= 12; ++elevation) {
+    for (int azimuth = 0; azimuth < 360; ++azimuth) {
+      const float angle = kDegree * (static_cast<float>(azimuth) + 0.3F);
+      const bool hits = somebody && azimuth < 20;
+      const float range = hits ? test::kInside : 10.0F, slope = std::tan(kDegree * static_cast<float>(elevation));
+      echoes.emplace_back(range * std::cos(angle), range * std::sin(angle), range * slope);
+    }
+  }
+  return echoes;
+}
+
+/// What config/at_rest.yaml says is enough: no odometry and no tf, and who comes in is dynamic within a second.
+TEST_F(Manager, aSensorAtRestTellsWhoComesInTheFirstSecond) {
+  XmlRpc::XmlRpcValue values;
+  ASSERT_TRUE(ros::param::get("/at_rest", values)) << "manager.test loads config/at_rest.yaml";
+  for (const auto& [name, value] : values) ros::param::set(nodeName() + "/" + name, value);
+  load();
+  constexpr int kEmpty = 10, kSecond = 10;  // scans
+  std::vector<std::size_t> dynamic;
+  for (int i = 0; i < kEmpty + kSecond; ++i) {
+    const auto echoes = room(i >= kEmpty);
+    clouds_.publish(test::plainCloud(echoes, 100.0 + 0.1 * i, "frame_that_nobody_knows"));
+    ASSERT_TRUE(waitForLabeled(static_cast<std::size_t>(i) + 1)) << status_;
+    dynamic.push_back(0);
+    for (std::size_t k = 0; k < echoes.size(); ++k) {
+      if (test::labelOf(*received_.back(), "dynamic", k) == 0) continue;
+      ++dynamic.back();
+      EXPECT_LT(echoes[k].head<2>().norm(), 6.0F) << "the wall, scan " << i;
+    }
+  }
+  EXPECT_EQ(std::count(dynamic.begin(), dynamic.begin() + kEmpty, 0U), kEmpty) << "nobody is there yet";
+  constexpr std::size_t kSomebody = 25 * 20;  // echoes
+  EXPECT_GT(*std::max_element(dynamic.begin() + kEmpty, dynamic.end()), kSomebody / 2);
 }
 
 }  // namespace
