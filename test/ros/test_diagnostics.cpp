@@ -91,23 +91,25 @@ TEST_F(DiagnosticsTest, theLevelIsThatOfTheStatusLine) {
   EXPECT_EQ(tellNow().message, "WARN: no clouds yet, no odometry yet");
 
   // A machine that stalls for a second makes that a WARN: the next scan makes it good.
-  const bool is_well = waitFor([this] {
+  DiagnosticStatus status;
+  EXPECT_TRUE(waitFor([&] {
     scan();
-    return tellNow().level == DiagnosticStatus::OK;
-  });
-  EXPECT_TRUE(is_well) << tellNow().message;
-  EXPECT_EQ(tellNow().message.substr(0, 3), "OK:");
+    status = tellNow();
+    return status.level == DiagnosticStatus::OK;
+  })) << status.message;
+  EXPECT_EQ(status.message.substr(0, 3), "OK:");
 
   diagnostics_.failed("labelling: bad_alloc");
-  const DiagnosticStatus failed = tellNow();
-  EXPECT_EQ(failed.level, DiagnosticStatus::ERROR);
-  EXPECT_EQ(failed.message, "ERROR: labelling: bad_alloc");
+  status = tellNow();
+  EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
+  EXPECT_EQ(status.message, "ERROR: labelling: bad_alloc");
   EXPECT_NE(tellNow().level, DiagnosticStatus::ERROR) << "told once";
 
   cloud(now_ - 50.0);  // older than all that is labelled, alone: dropped with the next one
   scan();
-  EXPECT_EQ(tellNow().level, DiagnosticStatus::WARN);
-  EXPECT_EQ(tellNow().message, "WARN: 1 scan dropped (out of order)");
+  status = tellNow();
+  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
+  EXPECT_NE(status.message.find("1 scan dropped (out of order)"), std::string::npos) << status.message;
 }
 
 TEST_F(DiagnosticsTest, keyFiguresAreNumbers) {
