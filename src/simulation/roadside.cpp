@@ -52,8 +52,12 @@ class Side {
       if (std::abs(s - reserved) < 7.0) return;
     }
     const Model model = random_.chance(0.12) ? makeVan(random_) : makeCar(random_);
-    PathPoint place = beside(s + random_.uniform(-0.3, 0.3), kInside + random_.uniform(-0.1, 0.1));
-    place.yaw += random_.uniform(-0.03, 0.03) + (random_.chance(0.2) ? kPi : 0.0);
+    const double lateral = random_.uniform(-0.1, 0.1);
+    const double along = random_.uniform(-0.3, 0.3);
+    PathPoint place = beside(s + along, kInside + lateral);
+    const double skew = random_.uniform(-0.03, 0.03);
+    const bool faces_back = random_.chance(0.2);
+    place.yaw += skew + (faces_back ? kPi : 0.0);
     builder_.parked(place, model);
   }
 
@@ -157,7 +161,8 @@ void populate(SceneBuilder& builder, const SharedPath& path, const Traffic& traf
   for (int i = 0; i < traffic.cyclists; ++i) {
     course.backwards = random.chance(0.5);
     course.lateral = (course.backwards ? 1.0 : -1.0) * (traffic.lane + 1.5);
-    course.speed = swinging(random.uniform(3.5, 6.0), 0.4, 7.0, random.uniform(0.0, 6.28));
+    const double phase = random.uniform(0.0, 6.28);
+    course.speed = swinging(random.uniform(3.5, 6.0), 0.4, 7.0, phase);
     builder.addClear(makeCyclist(random), course, horizon);
   }
   for (int i = 0; i < traffic.walkers; ++i) {

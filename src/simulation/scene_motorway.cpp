@@ -64,7 +64,8 @@ void addBorders(SceneBuilder& builder, const Path& path) {
       if (random.chance(0.35)) {
         builder.tree(place);
       } else {
-        builder.bush(place, random.uniform(1.5, 3.0), random.uniform(1.0, 2.4));
+        const double height = random.uniform(1.0, 2.4);
+        builder.bush(place, random.uniform(1.5, 3.0), height);
       }
     }
     for (double s = random.uniform(0.0, 300.0); s < length; s += random.uniform(300.0, 700.0)) {

@@ -161,7 +161,8 @@ Scene makeEmptyRoom(std::uint64_t seed) {
   builder.bush(at(-0.35, -0.33).position, 0.6, 1.1);
 
   Course course;
-  course.path = std::make_shared<const Path>(Path(at(-0.05, -0.08).position, random.uniform(-kPi, kPi)).line(1.0));
+  const double yaw = random.uniform(-kPi, kPi);
+  course.path = std::make_shared<const Path>(Path(at(-0.05, -0.08).position, yaw).line(1.0));
   builder.ego(course);
   builder.scene().ego.base_from_sensor = Eigen::Translation3d(0.0, 0.0, 1.2);
   builder.scene().beams = 16;

@@ -1,4 +1,4 @@
-// A street, a crossroads, a roundabout.
+// A street, a crossroads.
 #include <cmath>
 
 #include "donex/core/pi.h"
@@ -38,7 +38,7 @@ void addCrossroadsTraffic(SceneBuilder& builder) {
   }
 }
 
-/// From the south lane's opposite into the west arm, and a lorry's or bus' turn from the east to the north.
+/// From the south lane's opposite into the west arm, and a bus' turn from the east to the north.
 void addTurningTraffic(SceneBuilder& builder) {
   Random& random = builder.random();
   const auto turn = [&](double yaw, double radius, double angle) {
@@ -70,7 +70,8 @@ void addCrossroadsPeople(SceneBuilder& builder) {
     Course course;
     course.path =
         std::make_shared<const Path>(Path(14.0 * arm, yaw).line(45.0).arc(0.8, kPi).line(45.0).arc(0.8, kPi).wrap());
-    course.lateral = (random.chance(0.5) ? 5.9 : -6.9) + random.uniform(-0.3, 0.3);
+    const double side = random.chance(0.5) ? 5.9 : -6.9;
+    course.lateral = side + random.uniform(-0.3, 0.3);
     course.speed = SpeedProfile(random.uniform(0.8, 1.7));
     builder.addClear(makePerson(random), course, kRound);
   }

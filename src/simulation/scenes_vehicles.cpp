@@ -43,7 +43,8 @@ Scene makeLeadVehicle(std::uint64_t seed) {
   SceneBuilder builder({}, seed);
   Random& random = builder.random();
   const SharedPath path = addTownRoad(builder, 320.0);
-  const SpeedProfile speed = swinging(random.uniform(10.0, 13.0), 1.2, 15.0, random.uniform(0.0, 6.28));
+  const double phase = random.uniform(0.0, 6.28);
+  const SpeedProfile speed = swinging(random.uniform(10.0, 13.0), 1.2, 15.0, phase);
   const double start = random.uniform(10.0, 60.0);
   builder.ego(onRightLane(path, start, speed));
   const Model lead = random.chance(0.6) ? makeCar(random) : makeAnyVehicle(random);
@@ -123,9 +124,12 @@ Scene makeParkedCarLeaves(std::uint64_t seed) {
   roadside.no_parking = {first, first + 8.0, second, second - 8.0, third, third - 8.0};
   const SharedPath path = addTownRoad(builder, 220.0, roadside);
   builder.ego(onRightLane(path, start, swinging(5.0, 0.6, 9.0, 0.0)));
-  builder.add(makeCar(random), pullingOut(path, first, random.uniform(2.5, 3.5), false));
-  builder.add(makeCar(random), pullingOut(path, second, random.uniform(5.0, 6.5), true));
-  builder.add(makeVan(random), pullingOut(path, third, random.uniform(11.0, 13.0), true));
+  const Course first_course = pullingOut(path, first, random.uniform(2.5, 3.5), false);
+  builder.add(makeCar(random), first_course);
+  const Course second_course = pullingOut(path, second, random.uniform(5.0, 6.5), true);
+  builder.add(makeCar(random), second_course);
+  const Course third_course = pullingOut(path, third, random.uniform(11.0, 13.0), true);
+  builder.add(makeVan(random), third_course);
   Traffic people;
   people.walkers = 25;
   populate(builder, path, people);
