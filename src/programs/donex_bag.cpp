@@ -1,4 +1,5 @@
 // A bag with labelled clouds from a bag with clouds, as fast as the machine can.
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -23,9 +24,15 @@ struct Arguments {
 /// One output a part: OUT itself, or files of their names in the directory OUT.
 BagParts outputsOf(const BagParts& in, const fs::path& out) {
   if (in.size() == 1 && !fs::is_directory(out)) return {out};
-  createDirectory(out);
   BagParts outputs;
-  for (const fs::path& part : in) outputs.push_back(out / part.filename());
+  for (const fs::path& part : in) {
+    const fs::path output = out / part.filename();
+    const bool is_taken = std::find(outputs.begin(), outputs.end(), output) != outputs.end();
+    if (is_taken)
+      throw ArgumentError(part.filename().string() + ": two parts have this name, one would overwrite the other");
+    outputs.push_back(output);
+  }
+  createDirectory(out);
   return outputs;
 }
 
