@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <bzlib.h>
 #include <fmt/format.h>
@@ -21,7 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 using bag::Record;
 using bag::RecordSource;
-using Positions = std::set<std::uint64_t>;
+/// Of records in a chunk's content, rising. A chunk may hold millions of records of sixteen bytes.
+using Positions = std::vector<std::uint32_t>;
 
 constexpr std::string_view kVersion = "#ROSBAG V2.0\n";
 
@@ -60,7 +62,7 @@ class BagCheck {
   std::string name_;
   std::ifstream stream_;
   RecordSource source_;
-  Positions chunks_;
+  std::set<std::uint64_t> chunks_;
 };
 
 void BagCheck::run() {
@@ -112,12 +114,13 @@ std::uint64_t BagCheck::checkIndex(std::uint64_t at, const Positions& messages) 
   const std::string entries = readText(record.data, record.data_size);
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto offset = bag::numberIn<std::uint32_t>(entries.substr(i * kBytesEach + kOffsetAt, sizeof(std::uint32_t)));
-    if (messages.count(*offset) == 0) fail(at, "an index that leads to no message");
+    if (!std::binary_search(messages.begin(), messages.end(), *offset)) fail(at, "an index that leads to no message");
   }
   return record.end();
 }
 
-/// Where the messages of a chunk begin in its content.
+/// Where the messages of a chunk begin in its content, and the connections before them: the library passes over a
+/// connection to the message behind it.
 Positions BagCheck::messagesIn(const Record& chunk) {
   constexpr std::uint32_t kMost = 1U << 30U;  // a scan of the densest sensor is a hundredth
   const auto size = requireNumber<std::uint32_t>(chunk, "size");
@@ -128,25 +131,23 @@ Positions BagCheck::messagesIn(const Record& chunk) {
     return messagesIn({size, read}, chunk.begin);
   }
   const Content content = decompressed(chunk, size);
-  const auto read = [&](std::uint64_t at, char* to, std::size_t count) {
-    std::copy_n(content.get() + at, count, to);
-  };
+  const auto read = [&](std::uint64_t at, char* to, std::size_t count) { std::copy_n(content.get() + at, count, to); };
   return messagesIn({size, read}, chunk.begin);
 }
 
 Positions BagCheck::messagesIn(const RecordSource& source, std::uint64_t chunk) {
-  Positions messages, connections;  // the library passes over a connection to the message behind it
+  Positions records;
+  std::size_t with_message = 0;  // what comes behind the last message leads to none
   for (std::uint64_t at = 0; at < source.size;) {
     const auto record = bag::readRecord(source, at);
     if (!record) fail(chunk, fmt::format("a chunk whose content is no record at {}", at));
-    if (record->kind() == bag::kConnection) connections.insert(at);
-    if (record->kind() == bag::kMessage) {
-      messages.merge(connections);
-      messages.insert(at);
-    }
+    const bool is_message = record->kind() == bag::kMessage;
+    if (is_message || record->kind() == bag::kConnection) records.push_back(static_cast<std::uint32_t>(at));
+    if (is_message) with_message = records.size();
     at = record->end();
   }
-  return messages;
+  records.resize(with_message);
+  return records;
 }
 
 Content BagCheck::decompressed(const Record& chunk, std::uint32_t size) {
