@@ -1,6 +1,10 @@
 // donex/OctomapNodelet: `points` (PointCloud2) into an octree in ~fixed_frame, ~cells (PointCloud2) once a second.
 #include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
+#include <fmt/format.h>
 #include <nodelet/nodelet.h>
 #include <pluginlib/class_list_macros.hpp>
 #include <ros/ros.h>
@@ -13,6 +17,14 @@
 #include "donex/ros/strict_parameters.h"
 
 namespace donex {
+namespace {
+
+void requireRange(const char* name, double value, double low, double high, std::vector<std::string>& faults) {
+  const bool is_inside = value >= low && value <= high;  // false for NaN
+  if (!is_inside) faults.push_back(fmt::format("{} is {}, must be between {} and {} [m]", name, value, low, high));
+}
+
+}  // namespace
 
 class OctomapNodelet : public nodelet::Nodelet {
  private:
@@ -22,7 +34,10 @@ class OctomapNodelet : public nodelet::Nodelet {
     parameters.read("resolution", options.resolution);
     parameters.read("max_range", options.max_range);
     parameters.read("fixed_frame", fixed_frame_);
-    const std::string faults = joined(parameters.faults());
+    std::vector<std::string> found = parameters.faults();
+    requireRange("resolution", options.resolution, 0.01, 10.0, found);
+    requireRange("max_range", options.max_range, 1.0, 1000.0, found);
+    const std::string faults = joined(found);
     if (!faults.empty()) {
       NODELET_FATAL("%s", faults.c_str());
       throw std::invalid_argument(faults);
@@ -39,12 +54,14 @@ class OctomapNodelet : public nodelet::Nodelet {
       const auto transform = tf_.lookupTransform(fixed_frame_, cloud->header.frame_id, cloud->header.stamp);
       if (!map_->add(*cloud, tf2::transformToEigen(transform))) NODELET_WARN_THROTTLE(5.0, "a cloud cannot be read");
       stamp_ = cloud->header.stamp;
-    } catch (const tf2::TransformException& error) {
+    } catch (const std::exception& error) {  // it would end the whole manager
       NODELET_WARN_THROTTLE(5.0, "a cloud is left out of the map: %s", error.what());
     }
   }
 
+  /// The whole octree is walked: not where nobody asks for it.
   void publish() {
+    if (publisher_.getNumSubscribers() == 0) return;
     std_msgs::Header header;
     header.frame_id = fixed_frame_;
     header.stamp = stamp_;
