@@ -35,6 +35,17 @@ class InstallSpace(unittest.TestCase):
         path = pathlib.Path(rospkg.RosPack().get_path("donex")).resolve()
         self.assertEqual(path, INSTALL_SPACE / "share" / "donex")
 
+    def test_no_link_leads_nowhere(self):
+        dangling = [str(path) for path in INSTALL_SPACE.rglob("*") if path.is_symlink() and not path.exists()]
+        self.assertEqual(dangling, [])
+
+    def test_libraries_can_be_loaded(self):
+        libraries = sorted(map(str, (INSTALL_SPACE / "lib").glob("*.so")))
+        self.assertTrue(libraries)
+        # In a process of its own: what they register there concerns nobody.
+        subprocess.run([sys.executable, "-c", "import ctypes, sys\nfor path in sys.argv[1:]: ctypes.CDLL(path)",
+                        *libraries], check=True, timeout=60)
+
     def test_programs_explain_themselves(self):
         for program in PROGRAMS:
             self.assertIn(program, run(program, "--help"))
