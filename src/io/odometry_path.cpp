@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "donex/core/pi.h"
+
 namespace donex {
 namespace {
 
 Twist twistBetween(const Pose& from, const Pose& to, double duration, const Pose& at) {
   const Eigen::AngleAxisd turn((from.orientation.conjugate() * to.orientation).normalized());
   // The short way round, as slerp goes.
-  const double angle = turn.angle() > M_PI ? turn.angle() - 2.0 * M_PI : turn.angle();
+  const double angle = turn.angle() > kPi ? turn.angle() - 2.0 * kPi : turn.angle();
   return {at.orientation.conjugate() * ((to.position - from.position) / duration), turn.axis() * (angle / duration)};
 }
 
@@ -47,7 +49,19 @@ class Path {
   const std::vector<Pose>& poses_;
 };
 
-/// Every interval in equal parts; with an offset one part more at both ends, so that all scans stay covered.
+/// Beyond both ends as far as an offset moves them, and one step more: all scans stay covered.
+std::vector<double> extended(const std::vector<double>& stamps, const OdometryRhythm& rhythm) {
+  const std::size_t margin = 1 + static_cast<std::size_t>(std::abs(rhythm.offset) * rhythm.rate);
+  const double step = 1.0 / rhythm.rate;
+  std::vector<double> result;
+  for (std::size_t i = 0; i < margin; ++i) result.push_back((i == 0 ? stamps.front() : result.back()) - step);
+  std::reverse(result.begin(), result.end());
+  result.insert(result.end(), stamps.begin(), stamps.end());
+  for (std::size_t i = 0; i < margin; ++i) result.push_back(result.back() + step);
+  return result;
+}
+
+/// Every interval in equal parts; with an offset also beyond the ends.
 std::vector<double> odometryStamps(const std::vector<double>& stamps, const OdometryRhythm& rhythm) {
   std::vector<double> result;
   for (std::size_t i = 0; i + 1 < stamps.size(); ++i) {
@@ -57,12 +71,7 @@ std::vector<double> odometryStamps(const std::vector<double>& stamps, const Odom
   }
   result.push_back(stamps.back());
   if (rhythm.offset == 0.0) return result;
-  const std::size_t margin = 1 + static_cast<std::size_t>(std::abs(rhythm.offset) * rhythm.rate);
-  const double step = 1.0 / rhythm.rate;
-  for (std::size_t i = 0; i < margin; ++i) {
-    result.insert(result.begin(), result.front() - step);
-    result.push_back(result.back() + step);
-  }
+  result = extended(result, rhythm);
   for (double& stamp : result) stamp += rhythm.offset;
   return result;
 }

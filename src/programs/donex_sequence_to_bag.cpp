@@ -1,4 +1,6 @@
 // A sequence on disk as the bag a vehicle would have recorded.
+#include <optional>
+
 #include <fmt/format.h>
 
 #include "donex/bag/bag_file.h"
@@ -17,8 +19,9 @@ struct Arguments {
 void run(const CLI::App& app, Arguments& arguments) {
   arguments.options.compression = parseCompression(arguments.compression);
   const SequenceReader sequence = openSequence(app, arguments.sequence);
-  ProgressBar progress(sequence.size());
-  const auto summary = writeSequenceBag(sequence, arguments.file, arguments.options, [&] { progress.advance(); });
+  std::optional<ProgressBar> progress(sequence.size());
+  const auto summary = writeSequenceBag(sequence, arguments.file, arguments.options, [&] { progress->advance(); });
+  progress.reset();
   fmt::print("{} clouds on /points, {} odometry messages on /odom, tf odom <- base_link <- velodyne\n", summary.clouds,
              summary.odometry);
   if (summary.shift != 0.0) fmt::print("all times moved by {} s: a bag knows no time before 0\n", summary.shift);
