@@ -30,13 +30,24 @@ std::string poseLine(const Pose& pose) {
   return line + '\n';
 }
 
+/// What is there of another sequence would be overwritten, or taken for a part of the new one.
+void requireNoSequence(const fs::path& directory) {
+  for (const char* name : {"velodyne", "labels"}) {
+    const fs::path folder = directory / name;
+    const bool is_taken = fs::is_directory(folder) && !fs::is_empty(folder);
+    if (is_taken) throw DataError(folder.string() + ": is not empty, would mix two sequences");
+  }
+  for (const char* name : {"poses.txt", "times.txt", "calib.txt"}) {
+    const fs::path file = directory / name;
+    if (fs::exists(file)) throw DataError(file.string() + ": is there already, belongs to another sequence");
+  }
+}
+
 }  // namespace
 
 SequenceWriter::SequenceWriter(fs::path directory) : directory_(std::move(directory)) {
+  requireNoSequence(directory_);
   createDirectory(directory_ / "velodyne");
-  if (!fs::is_empty(directory_ / "velodyne")) {
-    throw DataError((directory_ / "velodyne").string() + ": is not empty, would mix two sequences");
-  }
   poses_.open(directory_ / "poses.txt");
   times_.open(directory_ / "times.txt");
   if (!poses_ || !times_) throw DataError(directory_.string() + ": cannot be written");

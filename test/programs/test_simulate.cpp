@@ -77,6 +77,18 @@ TEST_F(Simulate, FailsWhereItCannotWrite) {
   expect(1, {"nowhere/out.bag: cannot be written"}, "empty_room nowhere/out.bag --duration 0.2");
 }
 
+TEST_F(Simulate, OverwritesNothingOfAnotherSequence) {
+  for (const std::string name : {"poses.txt", "times.txt", "calib.txt", "labels/000000.label"}) {
+    const auto folder = path("of_" + name.substr(0, 5));
+    std::filesystem::create_directories((folder / name).parent_path());
+    test::writeText(folder / name, "somebody's");
+    const std::string named = name.substr(0, name.find('/'));
+    expect(1, {"/" + named + ": is "}, "empty_room " + folder.string() + " --duration 0.2");
+    EXPECT_EQ(test::readText(folder / name), "somebody's");
+    EXPECT_FALSE(std::filesystem::exists(folder / "velodyne"));
+  }
+}
+
 TEST_F(Simulate, HelpNamesTheScenes) {
   expect(0, {"intersection", "lead_vehicle", "empty_room", "--odometry-drift"}, "--help");
 }

@@ -79,7 +79,8 @@ class SequenceReader {
 /// Writes a sequence, scan after scan. poses.txt holds the sensor's own poses: no calib.txt.
 class SequenceWriter {
  public:
-  /// Creates the directories. Throws DataError when scans are there already or nothing can be written.
+  /// Creates the directories. Throws DataError when something of a sequence is there already, a calib.txt too, or
+  /// nothing can be written.
   explicit SequenceWriter(std::filesystem::path directory);
 
   /// Throws DataError when the stamp is not later than the last or a file cannot be written,
