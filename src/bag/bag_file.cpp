@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <fstream>
+#include <memory>
 #include <set>
 #include <stdexcept>
+#include <vector>
 
 #include <boost/make_shared.hpp>
 #include <fmt/format.h>
@@ -42,6 +44,17 @@ void requireFreeConnection(const fs::path& file) {
   if (is_free) return;
   throw DataError(file.string() +
                   ": its connections are not numbered 0, 1, 2, ...; 'rosbag filter IN OUT True' does that");
+}
+
+/// Closes a bag that cannot be written to its end: a full disk, most likely. Its destructor would try that again, and
+/// end the process by what it throws: then it is never called.
+void giveUp(std::unique_ptr<rosbag::Bag> bag) {
+  try {
+    bag->close();
+  } catch (const std::exception&) {
+    static auto* const never_destroyed = new std::vector<rosbag::Bag*>;
+    never_destroyed->push_back(bag.release());
+  }
 }
 
 }  // namespace
@@ -97,20 +110,21 @@ BagWriter::BagWriter(fs::path file)
 
 BagWriter::BagWriter(fs::path file, rosbag::CompressionType compression) : BagWriter(std::move(file)) {
   try {
-    bag_.open(temporary_.string(), rosbag::bagmode::Write);
-    bag_.setCompression(compression);
+    bag_->open(temporary_.string(), rosbag::bagmode::Write);
+    bag_->setCompression(compression);
   } catch (const std::exception& error) {
-    throw DataError(fmt::format("{}: cannot be written ({})", file_.string(), error.what()));
+    fail(error);
   }
 }
 
 BagWriter::BagWriter(fs::path file, const fs::path& original) : BagWriter(std::move(file)) {
   requireFreeConnection(original);
   try {
-    fs::copy_file(original, temporary_);
+    // A run that was killed may have left one of that name, of the same process number.
+    fs::copy_file(original, temporary_, fs::copy_options::overwrite_existing);
     fs::permissions(temporary_, fs::perms::owner_write, fs::perm_options::add);
-    bag_.open(temporary_.string(), rosbag::bagmode::Append);
-    bag_.setCompression(compressionOf(original));
+    bag_->open(temporary_.string(), rosbag::bagmode::Append);
+    bag_->setCompression(compressionOf(original));
   } catch (const std::exception& error) {
     throw DataError(
         fmt::format("{}: cannot be written as a copy of {} ({})", file_.string(), original.string(), error.what()));
@@ -119,21 +133,21 @@ BagWriter::BagWriter(fs::path file, const fs::path& original) : BagWriter(std::m
 
 BagWriter::~BagWriter() {
   if (temporary_.empty()) return;
-  try {
-    bag_.close();
-  } catch (const std::exception&) {
-    // A full disk, most likely; what is there is removed anyway.
-  }
+  giveUp(std::move(bag_));
   std::error_code ignored;
   fs::remove(temporary_, ignored);
 }
 
+void BagWriter::fail(const std::exception& error) const {
+  throw DataError(fmt::format("{}: cannot be written ({})", file_.string(), error.what()));
+}
+
 void BagWriter::commit() {
   try {
-    bag_.close();
+    bag_->close();
     fs::rename(temporary_, file_);
   } catch (const std::exception& error) {
-    throw DataError(fmt::format("{}: cannot be written ({})", file_.string(), error.what()));
+    fail(error);
   }
   temporary_.clear();
 }

@@ -3,10 +3,15 @@
 #pragma once
 
 #include <boost/shared_ptr.hpp>
+#include <fmt/format.h>
+#include <ros/exception.h>
 #include <ros/message_traits.h>
 #include <ros/serialization.h>
+#include <rosbag/message_instance.h>
 #include <sensor_msgs/PointCloud2.h>
 #include <tf2_msgs/TFMessage.h>
+
+#include "donex/io/data_error.h"
 
 namespace donex {
 
@@ -68,3 +73,21 @@ struct Serializer<donex::Checked<Message>> {
 };
 }  // namespace serialization
 }  // namespace ros
+
+namespace donex {
+
+/// The message of that type; throws DataError where the bytes are none.
+template <class Message>
+typename Message::ConstPtr parse(const rosbag::MessageInstance& message) {
+  try {
+    const auto parsed = message.instantiate<Checked<Message>>();
+    if (parsed) return typename Message::ConstPtr(parsed, &parsed->message);
+  } catch (const ros::Exception& error) {
+    throw DataError(fmt::format("{} at {:.9f} s: cannot be read ({})", message.getTopic(), message.getTime().toSec(),
+                                error.what()));
+  }
+  throw DataError(fmt::format("{} at {:.9f} s: is not a {}", message.getTopic(), message.getTime().toSec(),
+                              ros::message_traits::DataType<Message>::value()));
+}
+
+}  // namespace donex

@@ -1,6 +1,7 @@
 #include "donex/bag/label_bag.h"
 
 #include <algorithm>
+#include <exception>
 #include <memory>
 #include <set>
 #include <stdexcept>
@@ -30,6 +31,10 @@ class Labeler {
   void beginPart(std::size_t part) { part_ = part; }
   void add(const rosbag::MessageInstance& message);
   void finish();
+  /// Throws what the sink has thrown: the pipeline takes that for a cloud that cannot be labelled, and goes on.
+  void requireSink() const {
+    if (sink_fault_) std::rethrow_exception(sink_fault_);
+  }
 
  private:
   PipelineEvents events();
@@ -43,23 +48,10 @@ class Labeler {
   std::set<std::string> remarked_;
   ros::Time now_;
   std::size_t part_ = 0;
+  std::exception_ptr sink_fault_;
   tf2::BufferCore tf_;
   Pipeline pipeline_;  // last: it uses the others
 };
-
-/// The message of that type; throws where the bytes are none.
-template <class Message>
-typename Message::ConstPtr parse(const rosbag::MessageInstance& message) {
-  try {
-    const auto parsed = message.instantiate<Checked<Message>>();
-    if (parsed) return typename Message::ConstPtr(parsed, &parsed->message);
-  } catch (const ros::Exception& error) {
-    throw DataError(fmt::format("{} at {:.9f} s: cannot be read ({})", message.getTopic(), message.getTime().toSec(),
-                                error.what()));
-  }
-  throw DataError(fmt::format("{} at {:.9f} s: is not a {}", message.getTopic(), message.getTime().toSec(),
-                              ros::message_traits::DataType<Message>::value()));
-}
 
 PipelineEvents Labeler::events() {
   PipelineEvents events;
@@ -86,7 +78,11 @@ void Labeler::take(const LabeledScan& scan) {
   if (!truth.empty()) {
     summary_.evaluation.add(summary_.times.size() - 1, scan.scan.echoes, truth, asSemanticKitti(scan.labels));
   }
-  sink_(scan, now_, part_);
+  try {
+    if (!sink_fault_) sink_(scan, now_, part_);
+  } catch (...) {
+    sink_fault_ = std::current_exception();
+  }
 }
 
 void Labeler::addTransforms(const rosbag::MessageInstance& message, bool are_static) {
@@ -111,10 +107,12 @@ void Labeler::add(const rosbag::MessageInstance& message) {
   feed(message);
   while (pipeline_.step(now_.toSec())) {
   }
+  requireSink();
 }
 
 void Labeler::finish() {
   pipeline_.finish();
+  requireSink();
   summary_.counts = pipeline_.counts();
 }
 
@@ -172,7 +170,7 @@ class Recording {
   rosbag::View all_;
 };
 
-/// One time through the recording. Throws DataError that tells where.
+/// One time through the recording. Throws DataError that tells where, and what the sink throws as it is.
 void pass(Recording& recording, Labeler& labeler, LabelBagSummary& summary, const std::function<void()>& progress) {
   std::size_t part = 0;
   try {
@@ -185,6 +183,7 @@ void pass(Recording& recording, Labeler& labeler, LabelBagSummary& summary, cons
     }
     labeler.finish();
   } catch (const std::exception& error) {
+    labeler.requireSink();
     throw DataError(fmt::format("{}: after {} messages: {}", recording.name(std::min(part, recording.parts() - 1)),
                                 summary.messages, error.what()));
   }
@@ -239,7 +238,7 @@ LabelBagSummary labelBag(const BagParts& in, const BagParts& out, const LabelBag
   };
   const auto write = [&](const LabeledScan& scan, const ros::Time& now, std::size_t part) {
     advance(part);
-    writer->bag().write(topic, now, *labelCloud(*scan.cloud, scan.layout, scan.labels));
+    writer->write(topic, now, *labelCloud(*scan.cloud, scan.layout, scan.labels));
   };
   LabelBagSummary summary = judge(recording, options, write, progress);
   advance(out.size() - 1);

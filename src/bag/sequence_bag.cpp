@@ -46,7 +46,7 @@ tf2_msgs::TFMessage toTransform(double stamp, const std::string& parent, const s
   return message;
 }
 
-void writeOdometry(rosbag::Bag& bag, const OdometryPoint& point) {
+void writeOdometry(BagWriter& bag, const OdometryPoint& point) {
   const ros::Time stamp(point.stamp);
   bag.write("/odom", stamp, toOdometry(point));
   bag.write("/tf", stamp + kStep, toTransform(point.stamp, kOdomFrame, kBaseFrame, point.odom_from_base));
@@ -104,17 +104,17 @@ SequenceBagSummary writeSequenceBag(const SequenceReader& sequence, const std::f
 
   BagWriter writer(file, options.compression);
   const double start = earliest + summary.shift;
-  writer.bag().write("/tf_static", ros::Time(start) - kStep, toTransform(start, kBaseFrame, kSensorFrame, Pose()),
-                     latchedTransforms());
+  writer.write("/tf_static", ros::Time(start) - kStep, toTransform(start, kBaseFrame, kSensorFrame, Pose()),
+               latchedTransforms());
   auto next = odometry.begin();
   for (std::size_t i = 0; i < sequence.size(); ++i) {
     SequenceScan scan = sequence.scan(i);
     scan.stamp += summary.shift;
-    for (; next != odometry.end() && next->stamp <= scan.stamp; ++next) writeOdometry(writer.bag(), *next);
-    writer.bag().write("/points", ros::Time(scan.stamp) + kStep + kStep, toCloud(scan));
+    for (; next != odometry.end() && next->stamp <= scan.stamp; ++next) writeOdometry(writer, *next);
+    writer.write("/points", ros::Time(scan.stamp) + kStep + kStep, *toCloud(scan));
     progress();
   }
-  for (; next != odometry.end(); ++next) writeOdometry(writer.bag(), *next);
+  for (; next != odometry.end(); ++next) writeOdometry(writer, *next);
   writer.commit();
   return summary;
 }

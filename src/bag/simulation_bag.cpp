@@ -14,7 +14,7 @@ tf2_msgs::TFMessage only(const geometry_msgs::TransformStamped& transform) {
   return message;
 }
 
-void write(rosbag::Bag& bag, const OdometrySample& sample, const SimulationFrames& frames) {
+void write(BagWriter& bag, const OdometrySample& sample, const SimulationFrames& frames) {
   const ros::Time stamp(sample.stamp);
   bag.write("/odom", stamp, toOdometry(sample, frames));
   bag.write("/tf", stamp, only(toTransform(sample, frames)));
@@ -32,10 +32,10 @@ SimulationBagSummary writeSimulationBag(simulation::Simulator& simulator, const 
     if (summary.clouds == 0) {
       const double start = std::min(scan.stamp, scan.odometry.front().stamp);
       const auto mounting = only(mountingOf(scan.base_from_sensor, start, frames));
-      writer.bag().write("/tf_static", ros::Time(start), mounting, latchedTransforms());
+      writer.write("/tf_static", ros::Time(start), mounting, latchedTransforms());
     }
-    for (const OdometrySample& sample : scan.odometry) write(writer.bag(), sample, frames);
-    writer.bag().write("/points", ros::Time(scan.stamp), toCloud(scan, frames));
+    for (const OdometrySample& sample : scan.odometry) write(writer, sample, frames);
+    writer.write("/points", ros::Time(scan.stamp), *toCloud(scan, frames));
     summary.odometry += scan.odometry.size();
     ++summary.clouds;
     progress();

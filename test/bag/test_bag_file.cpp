@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "bag/bags.h"
 #include "donex/bag/bag_file.h"
@@ -12,7 +13,7 @@ using test::TemporaryDirectory;
 void writeBag(const fs::path& file, rosbag::CompressionType compression) {
   BagWriter writer(file, compression);
   for (std::uint32_t i = 1; i < 50; ++i) {
-    writer.bag().write("/text", ros::Time(i, 0), test::text(std::string(1000, 'a')));
+    writer.write("/text", ros::Time(i, 0), test::text(std::string(1000, 'a')));
   }
   writer.commit();
 }
@@ -89,7 +90,7 @@ TEST(BagWriter, WithoutCommitNothingChanges) {
   test::writeText(file, "what was there");
   {
     BagWriter writer(file, rosbag::compression::Uncompressed);
-    writer.bag().write("/text", ros::Time(1, 0), test::text("a"));
+    writer.write("/text", ros::Time(1, 0), test::text("a"));
   }
   EXPECT_EQ(test::filesIn(directory.path()), std::vector<std::string>{"out.bag"});
   EXPECT_EQ(test::readText(file), "what was there");
@@ -119,7 +120,7 @@ TEST(BagWriter, ACopyIsTheSameBytesUpToTheIndex) {
   writeBag(original, rosbag::compression::LZ4);
   fs::permissions(original, fs::perms::owner_read);
   BagWriter writer(copy, original);
-  writer.bag().write("/more", ros::Time(100, 0), test::text("b"));
+  writer.write("/more", ros::Time(100, 0), test::text("b"));
   writer.commit();
   EXPECT_EQ(compressionOf(copy), rosbag::compression::LZ4);
   const std::string chunks = chunksOf(original);
@@ -127,6 +128,15 @@ TEST(BagWriter, ACopyIsTheSameBytesUpToTheIndex) {
   EXPECT_EQ(chunksOf(copy).substr(0, chunks.size()), chunks);
   EXPECT_EQ(test::readAll(copy, "/more"), test::readAll(original));
   EXPECT_EQ(test::readAll(copy).size(), 50U);
+}
+
+TEST(BagWriter, WhatAKilledRunLeftIsNotInTheWay) {
+  const TemporaryDirectory directory;
+  const fs::path original = directory.path() / "in.bag", copy = directory.path() / "out.bag";
+  writeBag(original, rosbag::compression::Uncompressed);
+  test::writeText(copy.string() + "." + std::to_string(getpid()) + ".part", "left by another process of this number");
+  BagWriter(copy, original).commit();
+  EXPECT_EQ(test::readAll(copy), test::readAll(original));
 }
 
 TEST(BagWriter, ConnectionsNumberedOtherwiseAreRefusedNotMixed) {

@@ -1,5 +1,8 @@
 // Bags that cannot be labelled: each is named, and no output is left behind.
+#include <csignal>
+
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <topic_tools/shape_shifter.h>
 
 #include "bag/bags.h"
@@ -125,6 +128,47 @@ TEST_F(LabelBagFaults, BytesThatAreNoCloud) {
 
 TEST_F(LabelBagFaults, OutputCannotBeWritten) {
   EXPECT_THROW(test::label(in_, directory_.path() / "none" / "out.bag"), DataError);
+}
+
+/// No file of this process grows beyond that, as on a full disk.
+class FullDisk {
+ public:
+  explicit FullDisk(std::uintmax_t most) : old_handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &old_);
+    const rlimit limit{most, old_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FullDisk() {
+    setrlimit(RLIMIT_FSIZE, &old_);
+    std::signal(SIGXFSZ, old_handler_);
+  }
+
+ private:
+  rlimit old_{};
+  void (*old_handler_)(int);
+};
+
+TEST_F(LabelBagFaults, AFullDiskIsTheOutputsFault) {
+  std::string message;
+  {
+    const FullDisk disk(fs::file_size(in_) + 2000);
+    message = fault();
+  }
+  EXPECT_EQ(message.rfind(out_.string() + ": cannot be written (", 0), 0U) << message;
+}
+
+TEST_F(LabelBagFaults, WhatTheSinkThrowsIsNotTheInputsFault) {
+  int calls = 0;
+  const LabelBagSink sink = [&](const LabeledScan&, const ros::Time&, std::size_t) {
+    if (++calls == 2) throw DataError("the sink's");
+  };
+  try {
+    judgeBag({in_}, {}, sink, [](std::size_t, std::size_t) {});
+    FAIL() << "nothing was thrown";
+  } catch (const DataError& error) {
+    EXPECT_STREQ(error.what(), "the sink's");
+  }
+  EXPECT_EQ(calls, 2) << "it was asked again";
 }
 
 TEST_F(LabelBagFaults, FaultyConfiguration) {

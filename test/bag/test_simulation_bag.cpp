@@ -41,6 +41,21 @@ TEST(SimulationBag, HoldsEveryScanAndTheOdometryBeforeIt) {
   EXPECT_GE(odometry.back()->header.stamp, clouds.back()->header.stamp);
 }
 
+TEST(SimulationBag, WhatCannotBeWrittenIsToldWithTheFile) {
+  const test::TemporaryDirectory directory;
+  const auto file = directory.path() / "drive.bag";
+  simulation::SimulatorOptions options = shortDrive();
+  options.start_stamp = 0.0;  // with this offset the odometry begins there, too: at no time of a bag
+  options.odometry.stamp_offset = 0.1;
+  simulation::Simulator simulator("street", options);
+  try {
+    writeSimulationBag(simulator, file, rosbag::compression::Uncompressed, [] {});
+    FAIL() << "it was written";
+  } catch (const DataError& error) {
+    EXPECT_EQ(std::string(error.what()).rfind(file.string() + ": cannot be written (", 0), 0U) << error.what();
+  }
+}
+
 TEST(SimulationBag, IsLabelledWholly) {
   const test::TemporaryDirectory directory;
   const auto file = directory.path() / "drive.bag";

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 
 #include <rosbag/bag.h>
@@ -25,7 +26,8 @@ rosbag::CompressionType parseCompression(const std::string& name);
 /// listeners learn the mounting.
 boost::shared_ptr<ros::M_string> latchedTransforms();
 
-/// Writes a bag under a temporary name beside its own; commit() gives it its own name. Never half a bag.
+/// Writes a bag under a temporary name beside its own; commit() gives it its own name. Never half a bag. What goes
+/// wrong is told with the name of the file.
 class BagWriter {
  public:
   /// A new bag. Throws DataError when the file cannot be created.
@@ -40,17 +42,27 @@ class BagWriter {
   BagWriter(const BagWriter&) = delete;
   BagWriter& operator=(const BagWriter&) = delete;
 
-  rosbag::Bag& bag() { return bag_; }
+  /// A message, and what its connection says of itself where that is more than its type. Throws DataError.
+  template <class Message>
+  void write(const std::string& topic, const ros::Time& time, const Message& message,
+             const boost::shared_ptr<ros::M_string>& connection = {}) {
+    try {
+      bag_->write(topic, time, message, connection);
+    } catch (const std::exception& error) {
+      fail(error);
+    }
+  }
 
   /// Throws DataError when it cannot be written to the end.
   void commit();
 
  private:
   explicit BagWriter(std::filesystem::path file);
+  [[noreturn]] void fail(const std::exception& error) const;
 
   std::filesystem::path file_;
   std::filesystem::path temporary_;
-  rosbag::Bag bag_;
+  std::unique_ptr<rosbag::Bag> bag_ = std::make_unique<rosbag::Bag>();
 };
 
 }  // namespace donex

@@ -1,7 +1,6 @@
 // A bag in, the same bag with labelled clouds out.
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -39,6 +38,7 @@ using LabelBagProgress = std::function<void(std::size_t done, std::size_t total)
 using BagParts = std::vector<std::filesystem::path>;
 
 /// Hears of every labelled cloud: the time of the message that completed it, and the part that holds this message.
+/// What it throws is handed on as it is.
 using LabelBagSink = std::function<void(const LabeledScan& scan, const ros::Time& now, std::size_t part)>;
 
 /// Labels the clouds as the live node would, which sees the parts of a recording as one: its memory and /tf_static go
