@@ -1,5 +1,7 @@
 #include "donex/bag/simulation_bag.h"
 
+#include <algorithm>
+
 #include <tf2_msgs/TFMessage.h>
 
 #include "donex/bag/bag_file.h"
@@ -21,6 +23,11 @@ void write(BagWriter& bag, const OdometrySample& sample, const SimulationFrames&
 }
 
 }  // namespace
+
+double leastStart(const simulation::OdometryOptions& odometry) {
+  constexpr double kUsual = 2.0, kFirstStamp = 0.5;  // [s]
+  return std::max(kUsual, kFirstStamp - odometry.firstStamp());
+}
 
 SimulationBagSummary writeSimulationBag(simulation::Simulator& simulator, const std::filesystem::path& file,
                                         rosbag::CompressionType compression, const std::function<void()>& progress) {

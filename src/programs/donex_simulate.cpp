@@ -1,4 +1,5 @@
 // A simulated drive as a sequence or as a bag, with ground truth.
+#include <algorithm>
 #include <optional>
 
 #include <fmt/format.h>
@@ -13,6 +14,7 @@
 namespace donex {
 namespace {
 
+using simulation::OdometryOptions;
 using simulation::OptionInfo;
 using simulation::SimulatedScan;
 using simulation::Simulator;
@@ -52,21 +54,22 @@ std::string listOfScenes() {
 }
 
 void check(const Arguments& arguments) {
-  std::vector<std::string> faults = arguments.options.faults();
-  if (!simulation::isScene(arguments.scene)) faults.emplace_back(simulation::unknownScene(arguments.scene));
+  std::string faults = simulation::faultsOf(arguments.scene, arguments.options);
   const bool endless = arguments.options.duration == 0.0;
-  if (endless) faults.push_back("duration is 0: no file is endless");
-  std::string text;
-  for (const std::string& fault : faults) text += (text.empty() ? "" : "\n") + fault;
-  if (!text.empty()) throw ArgumentError(text);
+  if (endless) faults += (faults.empty() ? "" : "\n") + std::string("duration is 0: no file is endless");
+  if (!faults.empty()) throw ArgumentError(faults);
 }
 
 /// The scan as the layout holds it; its pose is the true one or what the odometry says.
 class SequenceScans {
  public:
-  explicit SequenceScans(bool from_odometry) : from_odometry_(from_odometry) {
+  SequenceScans(bool from_odometry, const OdometryOptions& odometry) : from_odometry_(from_odometry) {
+    constexpr double kMargin = 0.1;  // [s]
+    const double period = 1.0 / odometry.rate;
     EgoMotion::Options options;
-    options.max_extrapolation = 1.0;  // odometry that comes late or seldom: the newest is known
+    options.max_gap = period + kMargin;
+    // Odometry that comes late or seldom: the newest is known.
+    options.max_extrapolation = period + std::max(0.0, -odometry.stamp_offset) + kMargin;
     motion_ = EgoMotion(options);
   }
 
@@ -104,7 +107,7 @@ void writeSequence(const CLI::App& app, const Arguments& arguments) {
   }
   Simulator simulator(arguments.scene, arguments.options);
   SequenceWriter writer(arguments.out);
-  SequenceScans scans(arguments.poses == "odometry");
+  SequenceScans scans(arguments.poses == "odometry", arguments.options.odometry);
   std::optional<ProgressBar> progress(simulator.size());
   SimulatedScan scan;
   Count count;
@@ -120,9 +123,14 @@ void writeSequence(const CLI::App& app, const Arguments& arguments) {
   fmt::print("{} scans, {} echoes, {:.2f} % of them moving\n", writer.size(), count.echoes, percent);
 }
 
-void writeBag(Arguments& arguments) {
-  // A bag knows no time before 0 and tf none at 0.
-  arguments.options.start_stamp = std::max(arguments.options.start_stamp, 2.0);
+void writeBag(const CLI::App& app, Arguments& arguments) {
+  double& start = arguments.options.start_stamp;
+  const double least = leastStart(arguments.options.odometry);
+  const bool is_asked_for_less = app.count("--start-stamp") > 0 && start < least;
+  if (is_asked_for_less) {
+    warn(app, fmt::format("start_stamp is {} s, not {} s: a bag knows no time before 0", least, start));
+  }
+  start = std::max(start, least);
   Simulator simulator(arguments.scene, arguments.options);
   std::optional<ProgressBar> progress(simulator.size());
   const auto summary = writeSimulationBag(simulator, arguments.out, parseCompression(arguments.compression),
@@ -135,7 +143,7 @@ void writeBag(Arguments& arguments) {
 void run(const CLI::App& app, Arguments& arguments) {
   check(arguments);
   const bool is_bag = std::filesystem::path(arguments.out).extension() == ".bag";
-  is_bag ? writeBag(arguments) : writeSequence(app, arguments);
+  is_bag ? writeBag(app, arguments) : writeSequence(app, arguments);
 }
 
 }  // namespace

@@ -9,6 +9,14 @@
 
 namespace donex::simulation {
 
+std::string faultsOf(const std::string& scene, const SimulatorOptions& options) {
+  std::vector<std::string> faults = options.faults();
+  if (!isScene(scene)) faults.push_back(unknownScene(scene));
+  std::string text;
+  for (const std::string& fault : faults) text += (text.empty() ? "" : "\n") + fault;
+  return text;
+}
+
 Scan SimulatedScan::coreScan() const {
   Scan scan;
   scan.stamp = stamp;
@@ -21,17 +29,10 @@ Scan SimulatedScan::coreScan() const {
 
 namespace {
 
-std::string listed(const std::vector<std::string>& faults) {
-  std::string text;
-  for (const std::string& fault : faults) text += (text.empty() ? "" : "\n") + fault;
-  return text;
-}
-
 /// Checks everything that can be wrong before anything is built.
 SimulatorOptions checked(const std::string& scene, const SimulatorOptions& options) {
-  std::vector<std::string> faults = options.faults();
-  if (!isScene(scene)) faults.push_back(unknownScene(scene));
-  if (!faults.empty()) throw std::invalid_argument(listed(faults));
+  const std::string faults = faultsOf(scene, options);
+  if (!faults.empty()) throw std::invalid_argument(faults);
   return options;
 }
 
@@ -65,7 +66,7 @@ struct Simulator::State {
         sweep(scene, sensor, sensorOptions(given)),
         odometry_error(given.odometry, scramble(static_cast<std::uint64_t>(given.seed), 0x0D0)),
         odom_from_scene(odomFrom(poseOf(scene.ego, scene.ground, 0.0))),
-        next_sample(-static_cast<long>(std::ceil(0.1 * given.odometry.rate))) {}
+        next_sample(-given.odometry.early()) {}
 
   double period() const { return 1.0 / options.scan_rate; }
   Eigen::Isometry3d odomFromBase(double time) const { return odom_from_scene * poseOf(scene.ego, scene.ground, time); }
@@ -105,9 +106,7 @@ Simulator::~Simulator() = default;
 Simulator::Simulator(Simulator&&) noexcept = default;
 Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 
-std::size_t Simulator::size() const {
-  return static_cast<std::size_t>(std::floor(state_->options.duration * state_->options.scan_rate + 1e-6));
-}
+std::size_t Simulator::size() const { return state_->options.scans(); }
 
 bool Simulator::next(SimulatedScan& scan) {
   State& state = *state_;

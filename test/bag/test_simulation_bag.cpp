@@ -41,6 +41,24 @@ TEST(SimulationBag, HoldsEveryScanAndTheOdometryBeforeIt) {
   EXPECT_GE(odometry.back()->header.stamp, clouds.back()->header.stamp);
 }
 
+TEST(SimulationBag, LateStampsOfSlowOdometryAreNotBeforeTime) {
+  const test::TemporaryDirectory directory;
+  const auto file = directory.path() / "drive.bag";
+  EXPECT_EQ(leastStart({}), 2.0);
+  for (const double offset : {-1.0, 1.0}) {
+    simulation::SimulatorOptions options = shortDrive();
+    options.duration = 0.2;
+    options.odometry.rate = 1.0;
+    options.odometry.stamp_offset = offset;
+    options.start_stamp = leastStart(options.odometry);
+    simulation::Simulator simulator("street", options);
+    writeSimulationBag(simulator, file, rosbag::compression::Uncompressed, [] {});
+    const auto odometry = test::readTopic<nav_msgs::Odometry>(file, "/odom");
+    ASSERT_FALSE(odometry.empty());
+    EXPECT_GE(odometry.front()->header.stamp, ros::Time(0.5)) << offset;
+  }
+}
+
 TEST(SimulationBag, WhatCannotBeWrittenIsToldWithTheFile) {
   const test::TemporaryDirectory directory;
   const auto file = directory.path() / "drive.bag";

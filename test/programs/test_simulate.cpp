@@ -53,6 +53,23 @@ TEST_F(Simulate, WritesTruePosesOrTheOdometrys) {
   EXPECT_NEAR(std::abs(wayOf(reported) / wayOf(exact) - 1.0), 0.1, 0.01);
 }
 
+TEST_F(Simulate, PosesOfAnyOdometryThatIsAllowed) {
+  const std::string drive = " --poses odometry --duration 2 --beams 16 ";
+  expect(0, {"14 scans"}, "empty_room a" + drive + "--odometry-stamp-offset -1 --scan-rate 7");
+  expect(0, {"20 scans"}, "empty_room b" + drive + "--odometry-rate 1 --odometry-stamp-offset -0.5");
+  expect(0, {"20 scans"}, "empty_room c" + drive + "--odometry-rate 1 --odometry-stamp-offset -1");
+  expect(0, {"20 scans"}, "empty_room d" + drive + "--odometry-stamp-offset 1");
+}
+
+TEST_F(Simulate, SaysWhereABagBeginsLater) {
+  const std::string drive = " --duration 0.2 --beams 16";
+  const std::string remark = "start_stamp is 2 s, not 0.5 s: a bag knows no time before 0";
+  expect(0, {remark}, "empty_room a.bag --start-stamp 0.5" + drive);
+  const Outcome usual = expect(0, {"2 clouds"}, "empty_room b.bag" + drive);
+  EXPECT_EQ(usual.text.find("start_stamp"), std::string::npos) << usual.text;
+  expect(0, {"2 clouds"}, "empty_room c.bag --odometry-rate 1 --odometry-stamp-offset -1" + drive);
+}
+
 TEST_F(Simulate, WritesABag) {
   expect(0, {"5 clouds", "/points", "/odom"},
          "street out.bag --duration 0.5 --beams 16 --distortion --compression lz4");
@@ -66,6 +83,7 @@ TEST_F(Simulate, WarnsThatASequenceCannotHoldTheTimes) {
 TEST_F(Simulate, NamesEveryWrongArgumentAndWritesNothing) {
   expect(2, {"moon", "empty_room", "beams", "dropout"}, "moon out --beams 5 --dropout 7");
   expect(2, {"duration"}, "street out --duration 0");
+  expect(2, {"duration is 0.05 s, shorter than a scan"}, "street out --duration 0.05");
   expect(2, {"SCENE"}, "");
   expect(2, {"poses"}, "street out --poses none");
   EXPECT_FALSE(std::filesystem::exists(path("out")));

@@ -130,6 +130,23 @@ TEST(Simulator, OdometryComesInItsOwnRhythmAndCoversEveryScan) {
   }
 }
 
+TEST(Simulator, OdometryCoversTheFirstScanWhateverItsStampsAreMovedBy) {
+  for (const double offset : {-1.0, 0.0, 0.1, 0.7, 1.0}) {
+    for (const double rate : {1.0, 7.0, 50.0}) {
+      SimulatorOptions options;
+      options.beams = 16;
+      options.odometry.rate = rate;
+      options.odometry.stamp_offset = offset;
+      Simulator simulator("standstill_start", options);
+      SimulatedScan scan;
+      ASSERT_TRUE(simulator.next(scan));
+      ASSERT_FALSE(scan.odometry.empty());
+      EXPECT_EQ(scan.odometry.front().stamp, options.odometry.firstStamp());
+      EXPECT_LE(scan.odometry.front().stamp, 1e-9) << "offset " << offset << ", rate " << rate;
+    }
+  }
+}
+
 TEST(Simulator, TwistIsTheDerivativeOfThePose) {
   SimulatorOptions options;
   options.beams = 16;
@@ -173,6 +190,16 @@ TEST(Simulator, NamesEveryFault) {
     }
   }
   EXPECT_TRUE(SimulatorOptions().faults().empty());
+}
+
+TEST(Simulator, ADurationHoldsAtLeastAScan) {
+  SimulatorOptions options;
+  options.duration = 0.05;
+  const std::vector<std::string> expected{"duration is 0.05 s, shorter than a scan, which takes 0.1 s"};
+  EXPECT_EQ(options.faults(), expected);
+  options.scan_rate = 20.0;
+  EXPECT_TRUE(options.faults().empty());
+  EXPECT_EQ(options.scans(), 1U);
 }
 
 TEST(SimulatedScan, IsTakenByTheCoreWithItsTrueMotion) {

@@ -53,6 +53,8 @@ const std::vector<std::string>& sceneNames();
 bool isScene(const std::string& name);
 /// The message for a scene that isn't there: names those that are.
 std::string unknownScene(const std::string& name);
+/// Everything that is wrong with a drive, a line each: unknown scene, options; empty when there is nothing.
+std::string faultsOf(const std::string& scene, const SimulatorOptions& options);
 /// One sentence. Throws std::invalid_argument for an unknown name.
 std::string sceneMeaning(const std::string& scene);
 

@@ -1,6 +1,7 @@
 // Everything that can be chosen of a simulated drive, with default, unit, range and meaning: the one place for it.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,11 @@ struct OdometryOptions {
 
   /// No error at all: the true motion, at the same rate.
   static OdometryOptions exact();
+
+  /// Samples before the scene's beginning: by its own stamps the odometry covers the first scan.
+  long early() const;
+  /// Stamp of the first sample, where the scene begins at 0 [s].
+  double firstStamp() const { return stamp_offset - static_cast<double>(early()) / rate; }
 };
 
 struct SimulatorOptions {
@@ -35,6 +41,9 @@ struct SimulatorOptions {
 
   /// Every fault, a sentence each; empty when the options can be used.
   std::vector<std::string> faults() const;
+
+  /// Scans in the whole duration; 0: endless.
+  std::size_t scans() const;
 };
 
 struct OptionInfo {
