@@ -1,70 +1,32 @@
 // Hours of driving in minutes: a simulated drive again and again, with whatever goes wrong in a vehicle thrown in at
 // random. No crash, every scan accounted for, memory flat. DONEX_SOAK_SCANS says how many (scripts/soak: 36,000).
-#include <algorithm>
-#include <cstdlib>
-#include <fstream>
+#include <array>
+#include <cmath>
 #include <iostream>
-#include <numeric>
 #include <random>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include "donex/ros/simulation_messages.h"
-#include "donex/simulation/simulator.h"
 #include "ros/pipeline_rig.h"
+#include "ros/soak_drive.h"
 
 namespace donex {
 namespace {
 
 using test::PipelineRig;
+using test::SoakDrive;
 
-constexpr double kPeriod = 0.1;                 // [s]
-constexpr std::size_t kStride = 12;             // every so many-th echo
-constexpr std::size_t kLeastForMemory = 10000;  // scans; before, memory is still being warmed up
+constexpr double kPeriod = 0.1;                  // [s]
+constexpr std::size_t kLeastForReasons = 10000;  // scans
 
-std::size_t scansWanted() {
-  const char* text = std::getenv("DONEX_SOAK_SCANS");
-  return text == nullptr ? 500 : std::stoul(text);
-}
-
-double residentMegabytes() {
-  std::ifstream statm("/proc/self/statm");
-  double total = 0.0, resident = 0.0;
-  statm >> total >> resident;
-  return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
-}
-
-/// A piece of the drive: a thinned scan and the vehicle's pose at it.
-struct Piece {
-  sensor_msgs::PointCloud2Ptr cloud;
-  Eigen::Isometry3d odom_from_base;
-};
-
-std::vector<Piece> drivePieces(std::size_t scans) {
-  simulation::SimulatorOptions options;
-  options.beams = 16;
-  options.duration = 0.0;
-  simulation::Simulator simulator("street", options);
-  std::vector<Piece> pieces;
-  simulation::SimulatedScan scan;
-  while (pieces.size() < scans && simulator.next(scan)) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < scan.echoes.size(); i += kStride, ++kept) {
-      scan.echoes[kept] = scan.echoes[i];
-      scan.labels[kept] = scan.labels[i];
-    }
-    scan.echoes.resize(kept);
-    scan.labels.resize(kept);
-    pieces.push_back({toCloud(scan, {}), scan.odom_from_base});
-  }
-  return pieces;
-}
+/// What the faults lead to, each of them sooner or later.
+constexpr std::array kThrownIn{DropReason::kBadLayout,   DropReason::kQueueFull,   DropReason::kNoOdometry,
+                               DropReason::kOdometryGap, DropReason::kNoTransform, DropReason::kOutOfOrder,
+                               DropReason::kDuplicate,   DropReason::kTimeRanBack};
 
 class Soak {
  public:
-  explicit Soak(std::size_t scans)
-      : scans_(scans), pieces_(drivePieces(std::clamp<std::size_t>(scans / 4, 2, 400))), rig_(configOf(0.3), false) {
+  explicit Soak(std::size_t scans) : scans_(scans), drive_(scans, {}), rig_(configOf(0.3), false) {
     rig_.tf.setTransform(mountingOf(Eigen::Isometry3d(Eigen::Translation3d(0.0, 0.0, 1.8)), 1.0, {}), "soak", true);
   }
 
@@ -73,26 +35,19 @@ class Soak {
       now_ += kPeriod;
       jumpInTime();
       disturb();
-      sendOdometry(pieceOf(scan));
-      sendCloud(pieceOf(scan));
-      if (!chance(0.02)) rig_.run(now_);  // else it is busy, and the next ones pile up
+      sendOdometry(drive_.at(scan));
+      sendCloud(drive_.at(scan));
+      if (chance(0.004)) busy_ = 20;  // scans, which pile up
+      busy_ == 0 ? rig_.run(now_) : void(--busy_);
       forgetNotes();
-      if (scan % 100 == 0) memory_.push_back(residentMegabytes());
+      memory_.look();
     }
     rig_.pipeline.finish();
   }
 
   const PipelineCounts& counts() const { return rig_.pipeline.counts(); }
   std::size_t sent() const { return sent_; }
-  /// Median of a part of the samples of resident memory [MB].
-  double memory(double from, double to) const {
-    const auto at = [&](double share) {
-      return memory_.begin() + static_cast<long>(share * static_cast<double>(memory_.size()));
-    };
-    std::vector<double> part(at(from), at(to));
-    std::nth_element(part.begin(), part.begin() + static_cast<long>(part.size() / 2), part.end());
-    return part.at(part.size() / 2);
-  }
+  const test::MemoryWatch& memory() const { return memory_; }
 
  private:
   static Config configOf(double voxel_size) {
@@ -103,11 +58,6 @@ class Soak {
   }
   bool chance(double probability) { return std::uniform_real_distribution<double>(0.0, 1.0)(random_) < probability; }
 
-  /// Forwards, backwards, forwards: the vehicle never jumps.
-  const Piece& pieceOf(std::size_t scan) const {
-    const std::size_t turn = 2 * (pieces_.size() - 1), at = scan % turn;
-    return pieces_[at < pieces_.size() ? at : turn - at];
-  }
   void jumpInTime() {
     if (chance(0.001)) now_ -= 50.0;
     if (chance(0.001)) now_ += 50.0;
@@ -121,7 +71,7 @@ class Soak {
     if (chance(0.005)) add(test::plainCloud(test::ring(), now_, "nobody_knows"));
     if (chance(0.005)) add(test::plainCloud({}, now_ - 0.03, "velodyne"));
   }
-  void sendOdometry(const Piece& piece) {
+  void sendOdometry(const SoakDrive::Piece& piece) {
     const bool is_lost = now_ < odometry_lost_until_ && now_ > odometry_lost_until_ - 10.0;
     if (is_lost) return;
     OdometrySample sample;
@@ -131,7 +81,7 @@ class Soak {
     rig_.pipeline.addOdometry(*toOdometry(sample, {}));
     if (chance(0.02)) rig_.pipeline.addOdometry(*toOdometry(sample, {}));
   }
-  void sendCloud(const Piece& piece) {
+  void sendCloud(const SoakDrive::Piece& piece) {
     auto cloud = boost::make_shared<sensor_msgs::PointCloud2>(*piece.cloud);
     cloud->header.stamp.fromSec(now_ - (chance(0.01) ? 0.25 : 0.0));
     if (chance(0.01)) cloud->data.resize(cloud->data.size() / 2);
@@ -148,12 +98,12 @@ class Soak {
     for (auto* notes : {&rig_.drops, &rig_.refusals, &rig_.forgotten, &rig_.strange_times}) notes->clear();
   }
 
-  std::size_t scans_, sent_ = 0;
+  std::size_t scans_, sent_ = 0, busy_ = 0;
   std::mt19937 random_{7};
-  std::vector<Piece> pieces_;
+  SoakDrive drive_;
   PipelineRig rig_;
   double now_ = 1e6, odometry_lost_until_ = 0.0;
-  std::vector<double> memory_;
+  test::MemoryWatch memory_;
 };
 
 void printCounts(const PipelineCounts& counts) {
@@ -166,7 +116,7 @@ void printCounts(const PipelineCounts& counts) {
 }
 
 TEST(Soak, everyScanIsAccountedForAndMemoryStaysFlat) {
-  const std::size_t scans = scansWanted();
+  const std::size_t scans = test::soakScans(500);
   Soak soak(scans);
   soak.run();
   const PipelineCounts& counts = soak.counts();
@@ -175,10 +125,9 @@ TEST(Soak, everyScanIsAccountedForAndMemoryStaysFlat) {
   EXPECT_EQ(counts.clouds_labeled + counts.dropped.total(), counts.clouds_in);
   EXPECT_EQ(counts.dropped.of(DropReason::kInternalError), 0U);
   EXPECT_GT(counts.clouds_labeled, scans / 2);
-  if (scans < kLeastForMemory) return;
-  const double early = soak.memory(0.1, 0.2), late = soak.memory(0.9, 1.0);
-  std::cout << "resident memory " << early << " MB after a tenth, " << late << " MB in the end\n";
-  EXPECT_NEAR(late, early, 0.05 * early);
+  soak.memory().expectFlat();
+  if (scans < kLeastForReasons) return;
+  for (const DropReason reason : kThrownIn) EXPECT_GT(counts.dropped.of(reason), 0U) << describe(reason);
 }
 
 }  // namespace
