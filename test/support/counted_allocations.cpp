@@ -30,6 +30,14 @@ void* operator new(std::size_t size) {
   bytes += malloc_usable_size(memory);
   return memory;
 }
+// As std::stable_sort asks for its buffer; a sanitizer has one of its own, which does not call the above.
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  try {
+    return operator new(size);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
 
 void operator delete(void* memory) noexcept {
   bytes -= malloc_usable_size(memory);
