@@ -38,7 +38,9 @@ class SoakOfNode : public test::FaultsTest {
   }
   void disturb() {
     std_srvs::Trigger reset;
-    if (chance(0.005)) ASSERT_TRUE(ros::service::call(nodeName() + "/reset", reset));
+    if (chance(0.005)) {
+      ASSERT_TRUE(ros::service::call(nodeName() + "/reset", reset));
+    }
     if (chance(0.005)) reconfigure();
     if (chance(0.005)) take(test::plainCloud(test::ring(), now_, "nobody_knows"));
     if (chance(0.005)) take(test::plainCloud(test::ring(), now_ - 0.25));
