@@ -98,3 +98,10 @@ TEST_F(SoakOfNode, everyScanIsAccountedForAndMemoryStaysFlat) {
 
 }  // namespace
 }  // namespace donex
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "soak_node_test");
+  ros::NodeHandle keep_alive;
+  return RUN_ALL_TESTS();
+}
