@@ -98,12 +98,12 @@ class Soak {
     for (auto* notes : {&rig_.drops, &rig_.refusals, &rig_.forgotten, &rig_.strange_times}) notes->clear();
   }
 
+  test::MemoryWatch memory_;  // before all that it watches
   std::size_t scans_, sent_ = 0, busy_ = 0;
   std::mt19937 random_{7};
   SoakDrive drive_;
   PipelineRig rig_;
   double now_ = 1e6, odometry_lost_until_ = 0.0;
-  test::MemoryWatch memory_;
 };
 
 void printCounts(const PipelineCounts& counts) {
