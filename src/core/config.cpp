@@ -73,9 +73,9 @@ std::vector<std::string> Config::faults() const {
   checkExtent("x", region.x_min, region.x_max, voxel_size, faults);
   checkExtent("y", region.y_min, region.y_max, voxel_size, faults);
   checkExtent("z", region.z_min, region.z_max, voxel_size, faults);
+  if (!faults.empty()) return faults;  // a region without bounds cannot be counted in cells
   const double megabytes = memoryBound(*this, kUsualScan) / 1e6;
-  const bool fits = megabytes <= memory_limit;  // false where the region or voxel size is not a number
-  if (!fits && faults.empty()) {
+  if (megabytes > memory_limit) {
     std::ostringstream text;
     text << "the grid needs " << megabytes << " MB for scans of " << kUsualScan
          << " echoes, more than memory_limit (" << memory_limit

@@ -36,6 +36,14 @@ TEST(Config, EveryFaultIsNamedAtOnce) {
   }
 }
 
+TEST(Config, ARegionWithoutEndIsNotCountedInCells) {
+  Config config;
+  config.region.y_min = -1e71;
+  const auto faults = config.faults();
+  ASSERT_EQ(faults.size(), 1U);
+  EXPECT_TRUE(names(faults, "y_min"));
+}
+
 TEST(Config, RegionNarrowerThanAVoxelIsRefused) {
   Config config;
   config.region.z_min = 1.0;
