@@ -15,6 +15,7 @@ constexpr float kRowHeight = 0.006F;  // tangent of the elevation
 constexpr float kSteepest = 1.2F;     // tangent beyond which nothing is asked
 constexpr float kRangeStep = 0.02F;   // [m]
 constexpr float kNearest = 0.3F;      // [m] nothing is asked nearer to the sensor's axis
+constexpr float kFarthest = 1e6F;     // [m] nor farther away: infinity has no azimuth
 /// Of an image that covers everything.
 constexpr auto kPixels =
     static_cast<std::size_t>(kColumns) * static_cast<std::size_t>(2.0F * kSteepest / kRowHeight + 1.0F);
@@ -36,11 +37,13 @@ struct Projected {
   float range;
 };
 
-/// Column and row are 0 where the point is not valid: nothing is asked so near to the sensor's axis, or so steeply.
+/// Column and row are 0 where the point is not valid: nothing is asked so near to the sensor's axis, so far from it, or
+/// so steeply.
 inline Projected project(float x, float y, float z) {
   const float horizontal = std::sqrt(x * x + y * y);
   const float slope = z / horizontal;
-  const bool valid = static_cast<int>(horizontal > kNearest) & static_cast<int>(std::abs(slope) < kSteepest);
+  const bool valid = static_cast<int>(horizontal > kNearest) & static_cast<int>(horizontal < kFarthest) &
+                     static_cast<int>(std::abs(slope) < kSteepest);
   const float turn = (azimuthOf(y, x) + kPiF) * (kColumns / (2.0F * kPiF));
   const float row = (slope + kSteepest) / kRowHeight;
   return {valid, static_cast<int>(valid ? turn : 0.0F) & (kColumns - 1), static_cast<int>(valid ? row : 0.0F),

@@ -1,6 +1,7 @@
 // What a scan proves to be free: against a plain reading of the header, and on scenes small enough to see.
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 #include <random>
 
@@ -31,6 +32,20 @@ Echoes shell(double range, int beam_step = 2) {
     }
   }
   return echoes;
+}
+
+TEST(SightImage, WhatHasNoDirectionSaysNothing) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity(), kNaN = std::numeric_limits<float>::quiet_NaN();
+  const Echoes nowhere{
+      {kInfinity, kInfinity, 0.0F}, {-kInfinity, 1.0F, 1.0F}, {kNaN, 1.0F, 1.0F}, {1e30F, 1e30F, 1.0F}};
+  Echoes echoes = shell(10.0);
+  std::vector<std::uint8_t> is_echo(echoes.size(), 1);
+  echoes.insert(echoes.end(), nowhere.begin(), nowhere.end());
+  is_echo.resize(echoes.size(), 0);
+  SightImage image;
+  image.build(echoes, is_echo, {});
+  EXPECT_EQ(image.at({5.0F, 0.0F, 0.0F}, 0.1F), Sight::kFree);
+  for (const Eigen::Vector3f& point : nowhere) EXPECT_EQ(image.at(point, 0.1F), Sight::kUnknown);
 }
 
 struct Case {
