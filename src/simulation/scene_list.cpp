@@ -53,6 +53,7 @@ const Entry& entryOf(const std::string& name) {
 const std::vector<std::string>& sceneNames() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
+    all.reserve(kScenes.size());
     for (const Entry& entry : kScenes) all.emplace_back(entry.name);
     return all;
   }();
