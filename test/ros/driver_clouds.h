@@ -10,6 +10,11 @@
 
 namespace donex::test {
 
+// The scan that a driver publishes, and the vehicle meanwhile.
+constexpr double kStart = 1700000000.25;  ///< [s]
+constexpr double kTurn = 0.1;             ///< [s]
+constexpr double kSpeed = 15.0;           ///< [m/s]
+
 struct DriverField {
   const char* name;
   std::uint8_t datatype;

@@ -10,12 +10,12 @@ namespace donex {
 namespace {
 
 using test::DriverCloud;
+using test::kSpeed;
+using test::kStart;
+using test::kTurn;
 using test::PipelineRig;
 using test::PointField;
 
-constexpr double kStart = 1700000000.25;  // of the scan [s]
-constexpr double kTurn = 0.1;             // [s]
-constexpr double kSpeed = 15.0;           // [m/s]
 constexpr std::uint32_t kColumns = 64;
 
 /// Rows of an organised cloud, and what its driver writes where nothing came back.

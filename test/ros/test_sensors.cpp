@@ -15,12 +15,12 @@ namespace donex {
 namespace {
 
 using test::DriverCloud;
+using test::kSpeed;
+using test::kStart;
+using test::kTurn;
 using test::PipelineRig;
 using test::PointCloud2;
 
-constexpr double kStart = 1700000000.25;  // of the scan [s]
-constexpr double kTurn = 0.1;             // [s]
-constexpr double kSpeed = 15.0;           // [m/s]
 constexpr std::uint32_t kEchoes = 640;
 constexpr std::uint32_t kNothing = 7;  // every so many-th ray comes back with nothing
 
