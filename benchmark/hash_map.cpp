@@ -5,7 +5,7 @@
 
 #include <tsl/robin_map.h>
 
-#include "donex/core/brick_layout.h"
+#include "core/grid/brick_layout.h"
 #include "references.h"
 #include "register.h"
 

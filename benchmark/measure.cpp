@@ -1,6 +1,6 @@
 #include "measure.h"
 
-#include "donex/core/timing.h"
+#include "core/timing.h"
 
 namespace donex::benchmark {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "donex/core/detector.h"
+#include "donex/detector.h"
 #include "scans.h"
 
 namespace donex::benchmark {

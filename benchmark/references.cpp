@@ -5,9 +5,9 @@
 #include <string>
 #include <tuple>
 
-#include "donex/core/brick_layout.h"
-#include "donex/core/grid_window.h"
-#include "donex/core/line_of_sight.h"
+#include "core/grid/brick_layout.h"
+#include "core/grid/grid_window.h"
+#include "core/grid/line_of_sight.h"
 
 namespace donex::benchmark {
 namespace {

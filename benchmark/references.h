@@ -1,7 +1,7 @@
 // What every method is compared with, timed in the same run.
 #pragma once
 
-#include "donex/core/config.h"
+#include "donex/config.h"
 #include "measure.h"
 #include "scans.h"
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <tuple>
 
-#include "donex/simulation/simulator.h"
+#include "simulation/simulator.h"
 
 namespace donex::benchmark {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "donex/core/scan.h"
+#include "donex/scan.h"
 
 namespace donex::benchmark {
 

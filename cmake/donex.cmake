@@ -14,7 +14,7 @@ if(DONEX_SANITIZE)
   add_link_options(-fsanitize=${DONEX_SANITIZE})
 endif()
 
-# donex_own_code(target): C++17, warnings are errors, public headers under include/.
+# donex_own_code(target): C++17, warnings are errors, public headers under include/, the others beside their sources.
 # No floating-point contraction: the fast code must round exactly as the oracle does, on every machine.
 function(donex_own_code target)
   target_compile_features(${target} PUBLIC cxx_std_17)
@@ -22,7 +22,8 @@ function(donex_own_code target)
   # g++ leaves these out of -Wconversion: an index of a loop may be signed.
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion>)
   target_compile_options(${target} PUBLIC -ffp-contract=off)
-  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>)
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>)
 endfunction()
 
 # donex_add_test(name LIBRARIES libs... SOURCES files...): a GoogleTest program known to CTest, and to

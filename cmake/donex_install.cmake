@@ -3,7 +3,8 @@
 get_property(donex_programs GLOBAL PROPERTY donex_programs)
 
 if(DONEX_BUILD_ROS)
-  install(TARGETS donex_core donex_simulation donex_io donex_ros donex_bag_files donex_nodelets
+  install(TARGETS donex_core donex_simulation donex_io donex_evaluation donex_ros donex_simulated_lidar donex_bag_files
+      donex_nodelets
     ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
     LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION})
   if(TARGET donex_octomap)
@@ -18,7 +19,7 @@ if(DONEX_BUILD_ROS)
   install(DIRECTORY config launch report rviz DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
 else()
   include(GNUInstallDirs)
-  foreach(library donex_core donex_simulation donex_io)
+  foreach(library donex_core donex_simulation donex_io donex_evaluation)
     if(TARGET ${library})
       install(TARGETS ${library}
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}

@@ -1,4 +1,4 @@
-#include "donex/bag/bag_check.h"
+#include "bag/bag_check.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -14,7 +14,7 @@
 #include <fmt/format.h>
 #include <roslz4/lz4s.h>
 
-#include "bag_record.h"
+#include "bag/bag_record.h"
 
 namespace donex {
 namespace {

@@ -1,4 +1,4 @@
-#include "donex/bag/bag_file.h"
+#include "bag/bag_file.h"
 
 #include <cstdint>
 #include <fstream>
@@ -13,8 +13,8 @@
 #include <tf2_msgs/TFMessage.h>
 #include <unistd.h>
 
-#include "bag_record.h"
-#include "donex/bag/bag_check.h"
+#include "bag/bag_check.h"
+#include "bag/bag_record.h"
 
 namespace donex {
 namespace fs = std::filesystem;

@@ -1,4 +1,4 @@
-#include "bag_record.h"
+#include "bag/bag_record.h"
 
 namespace donex::bag {
 namespace {

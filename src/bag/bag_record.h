@@ -22,8 +22,8 @@ std::optional<Number> numberIn(const std::string& bytes) {
 
 struct Record {
   std::map<std::string, std::string> fields;
-  std::uint64_t begin = 0;       ///< of the record, in the file or chunk
-  std::uint64_t data = 0;        ///< where its data begin
+  std::uint64_t begin = 0;  ///< of the record, in the file or chunk
+  std::uint64_t data = 0;   ///< where its data begin
   std::uint32_t data_size = 0;
 
   std::uint64_t end() const { return data + data_size; }

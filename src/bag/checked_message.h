@@ -11,7 +11,7 @@
 #include <sensor_msgs/PointCloud2.h>
 #include <tf2_msgs/TFMessage.h>
 
-#include "donex/io/data_error.h"
+#include "io/data_error.h"
 
 namespace donex {
 

@@ -1,4 +1,4 @@
-#include "donex/bag/ground_truth.h"
+#include "bag/ground_truth.h"
 
 #include <algorithm>
 #include <cstring>

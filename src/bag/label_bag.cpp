@@ -1,4 +1,4 @@
-#include "donex/bag/label_bag.h"
+#include "bag/label_bag.h"
 
 #include <algorithm>
 #include <exception>
@@ -10,12 +10,12 @@
 #include <rosbag/view.h>
 #include <tf2_msgs/TFMessage.h>
 
-#include "checked_message.h"
-#include "donex/bag/bag_file.h"
-#include "donex/bag/ground_truth.h"
-#include "donex/core/whole_drive.h"
-#include "donex/io/sequence.h"
-#include "topics.h"
+#include "bag/bag_file.h"
+#include "bag/checked_message.h"
+#include "bag/ground_truth.h"
+#include "bag/topics.h"
+#include "donex/whole_drive.h"
+#include "io/sequence.h"
 
 namespace donex {
 namespace fs = std::filesystem;

@@ -1,4 +1,4 @@
-#include "donex/bag/sequence_bag.h"
+#include "bag/sequence_bag.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include <tf2_eigen/tf2_eigen.h>
 #include <tf2_msgs/TFMessage.h>
 
-#include "donex/bag/bag_file.h"
-#include "donex/ros/cloud_fields.h"
+#include "bag/bag_file.h"
+#include "ros/cloud_fields.h"
 
 namespace donex {
 namespace {

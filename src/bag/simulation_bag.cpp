@@ -1,11 +1,11 @@
-#include "donex/bag/simulation_bag.h"
+#include "bag/simulation_bag.h"
 
 #include <algorithm>
 
 #include <tf2_msgs/TFMessage.h>
 
-#include "donex/bag/bag_file.h"
-#include "donex/ros/simulation_messages.h"
+#include "bag/bag_file.h"
+#include "simulated_lidar/simulation_messages.h"
 
 namespace donex {
 namespace {

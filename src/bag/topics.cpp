@@ -1,11 +1,11 @@
-#include "topics.h"
+#include "bag/topics.h"
 
 #include <map>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "donex/io/data_error.h"
+#include "io/data_error.h"
 
 namespace donex {
 namespace {

@@ -1,10 +1,10 @@
-#include "donex/core/config.h"
+#include "donex/config.h"
 
 #include <cmath>
 #include <sstream>
 
-#include "donex/core/memory_bound.h"
-#include "donex/core/parameter_list.h"
+#include "donex/memory_bound.h"
+#include "donex/parameters.h"
 
 namespace donex {
 namespace {
@@ -77,9 +77,8 @@ std::vector<std::string> Config::faults() const {
   const double megabytes = memoryBound(*this, kUsualScan) / 1e6;
   if (megabytes > memory_limit) {
     std::ostringstream text;
-    text << "the grid needs " << megabytes << " MB for scans of " << kUsualScan
-         << " echoes, more than memory_limit (" << memory_limit
-         << " MB): choose a smaller region or a larger voxel_size";
+    text << "the grid needs " << megabytes << " MB for scans of " << kUsualScan << " echoes, more than memory_limit ("
+         << memory_limit << " MB): choose a smaller region or a larger voxel_size";
     faults.push_back(text.str());
   }
   return faults;

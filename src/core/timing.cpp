@@ -1,4 +1,4 @@
-#include "donex/core/timing.h"
+#include "core/timing.h"
 
 #include <algorithm>
 #include <chrono>

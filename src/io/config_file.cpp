@@ -1,4 +1,4 @@
-#include "donex/io/config_file.h"
+#include "io/config_file.h"
 
 #include <fstream>
 #include <sstream>
@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <yaml-cpp/eventhandler.h>
 
-#include "settings.h"
+#include "io/settings.h"
 
 namespace donex {
 namespace {

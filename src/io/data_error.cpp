@@ -1,4 +1,4 @@
-#include "donex/io/data_error.h"
+#include "io/data_error.h"
 
 #include <algorithm>
 

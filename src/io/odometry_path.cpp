@@ -1,9 +1,9 @@
-#include "donex/io/odometry_path.h"
+#include "io/odometry_path.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "donex/core/pi.h"
+#include "core/pi.h"
 
 namespace donex {
 namespace {

@@ -1,4 +1,4 @@
-#include "donex/io/pose.h"
+#include "io/pose.h"
 
 #include <cmath>
 

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "donex/io/sequence.h"
-#include "text_file.h"
+#include "io/sequence.h"
+#include "io/text_file.h"
 
 namespace donex {
 namespace fs = std::filesystem;

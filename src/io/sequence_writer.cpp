@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "donex/io/sequence.h"
-#include "donex/io/whole_file.h"
+#include "io/sequence.h"
+#include "io/whole_file.h"
 
 namespace donex {
 namespace fs = std::filesystem;

@@ -1,4 +1,4 @@
-#include "settings.h"
+#include "io/settings.h"
 
 #include <algorithm>
 #include <optional>
@@ -6,7 +6,7 @@
 
 #include <fmt/ranges.h>
 
-#include "donex/core/parameter_list.h"
+#include "donex/parameters.h"
 
 namespace donex {
 namespace {

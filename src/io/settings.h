@@ -6,8 +6,8 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include "donex/core/config.h"
-#include "donex/io/data_error.h"
+#include "donex/config.h"
+#include "io/data_error.h"
 
 namespace donex {
 

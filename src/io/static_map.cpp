@@ -1,4 +1,4 @@
-#include "donex/io/static_map.h"
+#include "io/static_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "donex/io/whole_file.h"
+#include "io/whole_file.h"
 
 namespace donex {
 namespace {

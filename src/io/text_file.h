@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "donex/io/data_error.h"
-#include "donex/io/pose.h"
+#include "io/data_error.h"
+#include "io/pose.h"
 
 namespace donex {
 

@@ -1,4 +1,4 @@
-#include "donex/io/whole_file.h"
+#include "io/whole_file.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
 // The classifier as a plain node.
-#include "donex/ros/donex_node.h"
+#include "ros/donex_node.h"
 
 #include <ros/ros.h>
 

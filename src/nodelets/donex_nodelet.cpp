@@ -4,7 +4,7 @@
 #include <nodelet/nodelet.h>
 #include <pluginlib/class_list_macros.hpp>
 
-#include "donex/ros/donex_node.h"
+#include "ros/donex_node.h"
 
 namespace donex {
 

@@ -12,9 +12,9 @@
 #include <tf2_ros/buffer.h>
 #include <tf2_ros/transform_listener.h>
 
-#include "donex/ros/octomap_builder.h"
-#include "donex/ros/parameters.h"
-#include "donex/ros/strict_parameters.h"
+#include "ros/octomap_builder.h"
+#include "ros/parameters.h"
+#include "ros/strict_parameters.h"
 
 namespace donex {
 namespace {

@@ -1,7 +1,7 @@
 // The simulated LiDAR as a plain node.
 #include <ros/ros.h>
 
-#include "donex/ros/simulated_lidar.h"
+#include "simulated_lidar/simulated_lidar.h"
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "simulated_lidar");

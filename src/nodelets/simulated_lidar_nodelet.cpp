@@ -4,7 +4,7 @@
 #include <nodelet/nodelet.h>
 #include <pluginlib/class_list_macros.hpp>
 
-#include "donex/ros/simulated_lidar.h"
+#include "simulated_lidar/simulated_lidar.h"
 
 namespace donex {
 

@@ -5,11 +5,11 @@
 
 #include <fmt/format.h>
 
-#include "donex/bag/label_bag.h"
-#include "donex/core/timing.h"
-#include "donex/io/comparison.h"
-#include "donex/io/whole_file.h"
-#include "program.h"
+#include "bag/label_bag.h"
+#include "core/timing.h"
+#include "evaluation/comparison.h"
+#include "io/whole_file.h"
+#include "programs/program.h"
 
 namespace donex {
 namespace {

@@ -8,9 +8,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "donex/io/comparison.h"
-#include "donex/io/whole_file.h"
-#include "program.h"
+#include "evaluation/comparison.h"
+#include "io/whole_file.h"
+#include "programs/program.h"
 
 namespace donex {
 namespace {

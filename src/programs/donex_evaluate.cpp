@@ -1,9 +1,9 @@
 // Scores label files against the labels of a sequence.
 #include <fmt/format.h>
 
-#include "donex/io/comparison.h"
-#include "donex/io/whole_file.h"
-#include "program.h"
+#include "evaluation/comparison.h"
+#include "io/whole_file.h"
+#include "programs/program.h"
 
 namespace donex {
 namespace {

@@ -4,13 +4,13 @@
 
 #include <fmt/format.h>
 
-#include "donex/io/map_score.h"
-#include "donex/io/sequence.h"
-#include "donex/io/static_map.h"
-#include "program.h"
+#include "evaluation/map_score.h"
+#include "io/sequence.h"
+#include "io/static_map.h"
+#include "programs/program.h"
 #ifdef DONEX_WITH_BAGS
-#include "donex/bag/ground_truth.h"
-#include "donex/bag/label_bag.h"
+#include "bag/ground_truth.h"
+#include "bag/label_bag.h"
 #endif
 
 namespace donex {

@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
-#include "donex/core/memory_bound.h"
-#include "donex/core/timing.h"
-#include "donex/io/comparison.h"
-#include "donex/io/sequence.h"
-#include "donex/io/whole_file.h"
-#include "program.h"
+#include "core/timing.h"
+#include "donex/memory_bound.h"
+#include "evaluation/comparison.h"
+#include "io/sequence.h"
+#include "io/whole_file.h"
+#include "programs/program.h"
 
 namespace donex {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
-#include "donex/bag/bag_file.h"
-#include "donex/bag/sequence_bag.h"
-#include "program.h"
+#include "bag/bag_file.h"
+#include "bag/sequence_bag.h"
+#include "programs/program.h"
 
 namespace donex {
 namespace {

@@ -4,12 +4,12 @@
 
 #include <fmt/format.h>
 
-#include "donex/bag/bag_file.h"
-#include "donex/bag/simulation_bag.h"
-#include "donex/core/ego_motion.h"
-#include "donex/io/sequence.h"
-#include "donex/simulation/simulator.h"
-#include "program.h"
+#include "bag/bag_file.h"
+#include "bag/simulation_bag.h"
+#include "donex/motion/ego_motion.h"
+#include "io/sequence.h"
+#include "programs/program.h"
+#include "simulation/simulator.h"
 
 namespace donex {
 namespace {

@@ -1,4 +1,4 @@
-#include "program.h"
+#include "programs/program.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -9,8 +9,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "donex/core/timing.h"
-#include "donex/io/config_file.h"
+#include "core/timing.h"
+#include "io/config_file.h"
 
 namespace donex {
 namespace {

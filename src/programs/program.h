@@ -8,10 +8,10 @@
 
 #include <CLI/CLI.hpp>
 
-#include "donex/core/config.h"
-#include "donex/io/drive_run.h"
-#include "donex/io/evaluation.h"
-#include "donex/io/sequence.h"
+#include "donex/config.h"
+#include "evaluation/drive_run.h"
+#include "evaluation/evaluation.h"
+#include "io/sequence.h"
 
 namespace donex {
 

@@ -1,4 +1,4 @@
-#include "donex/ros/cloud_fields.h"
+#include "ros/cloud_fields.h"
 
 #include <boost/endian/conversion.hpp>
 #include <boost/make_shared.hpp>

@@ -1,4 +1,4 @@
-#include "donex/ros/cloud_layout.h"
+#include "ros/cloud_layout.h"
 
 #include <algorithm>
 #include <array>

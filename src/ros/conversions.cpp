@@ -1,4 +1,4 @@
-#include "donex/ros/conversions.h"
+#include "ros/conversions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <boost/endian/conversion.hpp>
 #include <boost/make_shared.hpp>
 
-#include "donex/ros/cloud_fields.h"
+#include "ros/cloud_fields.h"
 
 namespace donex {
 namespace {

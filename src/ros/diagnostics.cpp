@@ -1,10 +1,10 @@
-#include "donex/ros/diagnostics.h"
+#include "ros/diagnostics.h"
 
 #include <fstream>
 
 #include <unistd.h>
 
-#include "donex/core/timing.h"
+#include "core/timing.h"
 
 namespace donex {
 namespace {

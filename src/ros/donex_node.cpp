@@ -1,4 +1,4 @@
-#include "donex/ros/donex_node.h"
+#include "ros/donex_node.h"
 
 #include <cmath>
 #include <memory>
@@ -10,12 +10,12 @@
 #include <tf2_ros/buffer.h>
 #include <tf2_ros/transform_listener.h>
 
-#include "donex/core/memory_bound.h"
-#include "donex/ros/diagnostics.h"
-#include "donex/ros/parameters.h"
-#include "donex/ros/pipeline.h"
-#include "donex/ros/reconfigure.h"
-#include "donex/ros/scan_publisher.h"
+#include "donex/memory_bound.h"
+#include "ros/diagnostics.h"
+#include "ros/parameters.h"
+#include "ros/pipeline.h"
+#include "ros/reconfigure.h"
+#include "ros/scan_publisher.h"
 
 namespace donex {
 namespace {

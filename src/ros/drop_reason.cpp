@@ -1,4 +1,4 @@
-#include "donex/ros/drop_reason.h"
+#include "ros/drop_reason.h"
 
 namespace donex {
 

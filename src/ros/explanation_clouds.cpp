@@ -1,10 +1,10 @@
-#include "donex/ros/explanation_clouds.h"
+#include "ros/explanation_clouds.h"
 
 #include <algorithm>
 #include <array>
 #include <cstring>
 
-#include "donex/ros/cloud_fields.h"
+#include "ros/cloud_fields.h"
 
 namespace donex {
 namespace {

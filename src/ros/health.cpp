@@ -1,4 +1,4 @@
-#include "donex/ros/health.h"
+#include "ros/health.h"
 
 #include <array>
 #include <cstdio>

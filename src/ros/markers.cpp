@@ -1,4 +1,4 @@
-#include "donex/ros/markers.h"
+#include "ros/markers.h"
 
 #include <iomanip>
 #include <sstream>

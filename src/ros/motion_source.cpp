@@ -1,4 +1,4 @@
-#include "donex/ros/motion_source.h"
+#include "ros/motion_source.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "donex/ros/object_messages.h"
+#include "ros/object_messages.h"
 
 #include <boost/make_shared.hpp>
 #include <tf2_eigen/tf2_eigen.h>

@@ -1,11 +1,11 @@
-#include "donex/ros/octomap_builder.h"
+#include "ros/octomap_builder.h"
 
 #include <vector>
 
 #include <octomap/OcTree.h>
 
-#include "donex/ros/conversions.h"
-#include "donex/ros/explanation_clouds.h"
+#include "ros/conversions.h"
+#include "ros/explanation_clouds.h"
 
 namespace donex {
 

@@ -1,4 +1,4 @@
-#include "donex/ros/parameter_files.h"
+#include "ros/parameter_files.h"
 
 #include <algorithm>
 #include <functional>
@@ -10,7 +10,7 @@
 
 #include <fmt/ranges.h>
 
-#include "donex/core/parameter_list.h"
+#include "donex/parameters.h"
 
 namespace donex {
 namespace {

@@ -1,4 +1,4 @@
-#include "donex/ros/parameters.h"
+#include "ros/parameters.h"
 
 #include <algorithm>
 #include <set>
@@ -9,8 +9,8 @@
 #include <dynamic_reconfigure/config_tools.h>
 #include <fmt/ranges.h>
 
-#include "donex/core/parameter_list.h"
-#include "donex/ros/parameter_files.h"
+#include "donex/parameters.h"
+#include "ros/parameter_files.h"
 
 namespace donex {
 namespace {

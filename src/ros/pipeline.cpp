@@ -1,12 +1,12 @@
-#include "donex/ros/pipeline.h"
+#include "ros/pipeline.h"
 
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
 #include <utility>
 
-#include "donex/core/deskew.h"
-#include "donex/ros/parameters.h"
+#include "donex/motion/deskew.h"
+#include "ros/parameters.h"
 
 namespace donex {
 namespace {

@@ -1,4 +1,4 @@
-#include "donex/ros/reconfigure.h"
+#include "ros/reconfigure.h"
 
 #include <utility>
 
@@ -6,7 +6,7 @@
 #include <donex/DonexConfig.h>
 #include <dynamic_reconfigure/server.h>
 
-#include "donex/ros/parameters.h"
+#include "ros/parameters.h"
 
 namespace donex {
 namespace {

@@ -1,7 +1,7 @@
-#include "donex/ros/scan_publisher.h"
+#include "ros/scan_publisher.h"
 
-#include "donex/ros/explanation_clouds.h"
-#include "donex/ros/object_messages.h"
+#include "ros/explanation_clouds.h"
+#include "ros/object_messages.h"
 
 namespace donex {
 namespace {

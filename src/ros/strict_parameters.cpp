@@ -1,4 +1,4 @@
-#include "donex/ros/strict_parameters.h"
+#include "ros/strict_parameters.h"
 
 namespace donex {
 

@@ -2,7 +2,7 @@
 #include <fstream>
 #include <iostream>
 
-#include "donex/ros/parameter_files.h"
+#include "ros/parameter_files.h"
 
 namespace {
 

@@ -1,10 +1,10 @@
-#include "donex/simulation/ground.h"
+#include "simulation/ground.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "donex/simulation/random.h"
+#include "simulation/random.h"
 
 namespace donex::simulation {
 namespace {

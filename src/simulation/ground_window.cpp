@@ -1,10 +1,10 @@
-#include "donex/simulation/ground_window.h"
+#include "simulation/ground_window.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
-#include "donex/simulation/shape.h"
+#include "simulation/shape.h"
 
 namespace donex::simulation {
 namespace {

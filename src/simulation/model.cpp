@@ -1,4 +1,4 @@
-#include "donex/simulation/model.h"
+#include "simulation/model.h"
 
 #include <cmath>
 

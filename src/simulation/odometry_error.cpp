@@ -1,4 +1,4 @@
-#include "donex/simulation/odometry_error.h"
+#include "simulation/odometry_error.h"
 
 namespace donex::simulation {
 namespace {

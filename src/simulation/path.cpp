@@ -1,10 +1,10 @@
-#include "donex/simulation/path.h"
+#include "simulation/path.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "donex/core/pi.h"
+#include "core/pi.h"
 
 namespace donex::simulation {
 namespace {

@@ -1,9 +1,9 @@
-#include "donex/simulation/ray_caster.h"
+#include "simulation/ray_caster.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "donex/core/pi.h"
+#include "core/pi.h"
 
 namespace donex::simulation {
 namespace {

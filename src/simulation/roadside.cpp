@@ -1,8 +1,8 @@
-#include "roadside.h"
+#include "simulation/roadside.h"
 
 #include <cmath>
 
-#include "donex/core/pi.h"
+#include "core/pi.h"
 
 namespace donex::simulation {
 namespace {

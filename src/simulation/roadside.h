@@ -1,7 +1,7 @@
 // What stands beside roads.
 #pragma once
 
-#include "scene_builder.h"
+#include "simulation/scene_builder.h"
 
 namespace donex::simulation {
 

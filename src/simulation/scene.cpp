@@ -1,10 +1,10 @@
-#include "donex/simulation/scene.h"
+#include "simulation/scene.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "donex/core/pi.h"
-#include "donex/simulation/simulator.h"
+#include "core/pi.h"
+#include "simulation/simulator.h"
 
 namespace donex::simulation {
 namespace {

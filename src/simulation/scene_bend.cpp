@@ -1,9 +1,9 @@
 // A roundabout with four arms; two of them are the ends of one winding road.
 #include <cmath>
 
-#include "donex/core/pi.h"
-#include "roadside.h"
-#include "scenes.h"
+#include "core/pi.h"
+#include "simulation/roadside.h"
+#include "simulation/scenes.h"
 
 namespace donex::simulation {
 namespace {

@@ -1,9 +1,9 @@
-#include "scene_builder.h"
+#include "simulation/scene_builder.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "donex/core/pi.h"
+#include "core/pi.h"
 
 namespace donex::simulation {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <memory>
 
-#include "donex/simulation/random.h"
-#include "donex/simulation/scene.h"
-#include "track.h"
+#include "simulation/random.h"
+#include "simulation/scene.h"
+#include "simulation/track.h"
 
 namespace donex::simulation {
 

@@ -2,8 +2,8 @@
 #include <array>
 #include <stdexcept>
 
-#include "donex/simulation/simulator.h"
-#include "scenes.h"
+#include "simulation/scenes.h"
+#include "simulation/simulator.h"
 
 namespace donex::simulation {
 namespace {

@@ -2,9 +2,9 @@
 #include <array>
 #include <cmath>
 
-#include "donex/core/pi.h"
-#include "roadside.h"
-#include "scenes.h"
+#include "core/pi.h"
+#include "simulation/roadside.h"
+#include "simulation/scenes.h"
 
 namespace donex::simulation {
 namespace {

@@ -1,7 +1,7 @@
 // The scenes, each built from its seed.
 #pragma once
 
-#include "scene_builder.h"
+#include "simulation/scene_builder.h"
 
 namespace donex::simulation {
 

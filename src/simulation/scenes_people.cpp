@@ -1,6 +1,6 @@
 // The hard cases about people on foot.
-#include "roadside.h"
-#include "scenes.h"
+#include "simulation/roadside.h"
+#include "simulation/scenes.h"
 
 namespace donex::simulation {
 

@@ -1,9 +1,9 @@
 // The hard cases whose difficulty is what stands around, and where the ego vehicle goes.
 #include <cmath>
 
-#include "donex/core/pi.h"
-#include "roadside.h"
-#include "scenes.h"
+#include "core/pi.h"
+#include "simulation/roadside.h"
+#include "simulation/scenes.h"
 
 namespace donex::simulation {
 namespace {

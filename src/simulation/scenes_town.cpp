@@ -1,9 +1,9 @@
 // A street, a crossroads.
 #include <cmath>
 
-#include "donex/core/pi.h"
-#include "roadside.h"
-#include "scenes.h"
+#include "core/pi.h"
+#include "simulation/roadside.h"
+#include "simulation/scenes.h"
 
 namespace donex::simulation {
 namespace {

@@ -1,6 +1,6 @@
 // The hard cases whose difficulty is how a vehicle moves.
-#include "roadside.h"
-#include "scenes.h"
+#include "simulation/roadside.h"
+#include "simulation/scenes.h"
 
 namespace donex::simulation {
 namespace {

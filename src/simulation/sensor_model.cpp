@@ -1,10 +1,10 @@
-#include "donex/simulation/sensor_model.h"
+#include "simulation/sensor_model.h"
 
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include "donex/core/pi.h"
+#include "core/pi.h"
 
 namespace donex::simulation {
 namespace {

@@ -1,9 +1,9 @@
-#include "donex/simulation/shape.h"
+#include "simulation/shape.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "donex/simulation/random.h"
+#include "simulation/random.h"
 
 namespace donex::simulation {
 namespace {

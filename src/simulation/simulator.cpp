@@ -1,11 +1,11 @@
-#include "donex/simulation/simulator.h"
+#include "simulation/simulator.h"
 
 #include <cmath>
 #include <stdexcept>
 
-#include "donex/simulation/odometry_error.h"
-#include "donex/simulation/scene.h"
-#include "donex/simulation/sweep.h"
+#include "simulation/odometry_error.h"
+#include "simulation/scene.h"
+#include "simulation/sweep.h"
 
 namespace donex::simulation {
 

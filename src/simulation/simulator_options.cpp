@@ -1,4 +1,4 @@
-#include "donex/simulation/simulator_options.h"
+#include "simulation/simulator_options.h"
 
 #include <algorithm>
 #include <cmath>

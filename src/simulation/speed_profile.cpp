@@ -1,4 +1,4 @@
-#include "donex/simulation/speed_profile.h"
+#include "simulation/speed_profile.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
-#include "donex/simulation/sweep.h"
+#include "simulation/sweep.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "donex/core/pi.h"
-#include "donex/core/rigid_motion.h"
-#include "donex/simulation/random.h"
+#include "core/pi.h"
+#include "donex/motion/rigid_motion.h"
+#include "simulation/random.h"
 
 namespace donex::simulation {
 namespace {

@@ -1,4 +1,4 @@
-#include "track.h"
+#include "simulation/track.h"
 
 #include <algorithm>
 #include <cmath>

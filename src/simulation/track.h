@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "donex/simulation/scene.h"
+#include "simulation/scene.h"
 
 namespace donex::simulation {
 

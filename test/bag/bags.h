@@ -10,8 +10,8 @@
 #include <rosbag/view.h>
 #include <std_msgs/String.h>
 
-#include "donex/bag/label_bag.h"
-#include "donex/bag/sequence_bag.h"
+#include "bag/label_bag.h"
+#include "bag/sequence_bag.h"
 #include "support/sequences.h"
 #include "support/temporary_directory.h"
 

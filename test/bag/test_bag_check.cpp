@@ -6,8 +6,8 @@
 #include <tf2_msgs/TFMessage.h>
 #include <topic_tools/shape_shifter.h>
 
+#include "bag/bag_check.h"
 #include "bag/bags.h"
-#include "donex/bag/bag_check.h"
 
 namespace donex {
 namespace {

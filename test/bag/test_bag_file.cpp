@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "bag/bag_file.h"
 #include "bag/bags.h"
-#include "donex/bag/bag_file.h"
 
 namespace donex {
 namespace {

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
+#include "bag/bag_file.h"
 #include "bag/bags.h"
-#include "donex/bag/bag_file.h"
-#include "donex/io/drive_run.h"
+#include "evaluation/drive_run.h"
 
 namespace donex {
 namespace {

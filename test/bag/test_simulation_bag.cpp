@@ -4,7 +4,7 @@
 #include <sensor_msgs/PointCloud2.h>
 
 #include "bag/bags.h"
-#include "donex/bag/simulation_bag.h"
+#include "bag/simulation_bag.h"
 
 namespace donex {
 namespace {

@@ -1,5 +1,3 @@
-#include "donex/core/config.h"
-
 #include <cmath>
 #include <limits>
 #include <set>
@@ -7,9 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include "donex/core/detector.h"
-#include "donex/core/memory_bound.h"
-#include "donex/core/parameter_list.h"
+#include "donex/config.h"
+#include "donex/detector.h"
+#include "donex/memory_bound.h"
+#include "donex/parameters.h"
 
 namespace donex {
 namespace {

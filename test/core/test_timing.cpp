@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "donex/core/timing.h"
+#include "core/timing.h"
 
 namespace donex {
 namespace {

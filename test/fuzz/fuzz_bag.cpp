@@ -1,5 +1,5 @@
 // Any bytes as a bag: labelled, or a DataError.
-#include "donex/bag/label_bag.h"
+#include "bag/label_bag.h"
 #include "fuzz/input_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -6,7 +6,7 @@
 #include <boost/make_shared.hpp>
 #include <tf2/buffer_core.h>
 
-#include "donex/ros/pipeline.h"
+#include "ros/pipeline.h"
 
 namespace {
 

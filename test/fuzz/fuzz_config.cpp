@@ -1,8 +1,8 @@
 // Any bytes as a configuration file: a configuration without faults, or a DataError.
 #include <cstdlib>
 
-#include "donex/io/config_file.h"
 #include "fuzz/input_file.h"
+#include "io/config_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto file = donex::fuzz::folder() / "config.yaml";

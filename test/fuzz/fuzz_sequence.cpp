@@ -2,8 +2,8 @@
 #include <array>
 #include <string>
 
-#include "donex/io/sequence.h"
 #include "fuzz/input_file.h"
+#include "io/sequence.h"
 
 namespace {
 

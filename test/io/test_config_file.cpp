@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "donex/core/parameter_list.h"
-#include "donex/io/config_file.h"
+#include "donex/parameters.h"
+#include "io/config_file.h"
 #include "support/temporary_directory.h"
 
 namespace donex {

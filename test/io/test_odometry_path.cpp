@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "donex/io/odometry_path.h"
+#include "io/odometry_path.h"
 #include "support/sequences.h"
 
 namespace donex {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "donex/core/rigid_motion.h"
-#include "donex/io/pose.h"
+#include "donex/motion/rigid_motion.h"
+#include "io/pose.h"
 #include "support/sequences.h"
 
 namespace donex {

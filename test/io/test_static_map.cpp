@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "donex/io/map_score.h"
-#include "donex/io/static_map.h"
+#include "evaluation/map_score.h"
+#include "io/static_map.h"
 #include "support/temporary_directory.h"
 
 namespace donex {

@@ -1,7 +1,7 @@
 // Nothing half ever stands under a file's name.
 #include <gtest/gtest.h>
 
-#include "donex/io/whole_file.h"
+#include "io/whole_file.h"
 #include "support/temporary_directory.h"
 
 namespace donex {

@@ -1,7 +1,7 @@
 // donex_simulate: its exit codes, what it prints and writes.
 #include <gtest/gtest.h>
 
-#include "donex/io/sequence.h"
+#include "io/sequence.h"
 #include "programs/command.h"
 #include "support/temporary_directory.h"
 

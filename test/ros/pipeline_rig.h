@@ -7,8 +7,8 @@
 
 #include <tf2/buffer_core.h>
 
-#include "donex/ros/pipeline.h"
 #include "ros/cloud_builder.h"
+#include "ros/pipeline.h"
 
 namespace donex::test {
 

@@ -12,8 +12,8 @@
 #include <malloc.h>
 #include <unistd.h>
 
-#include "donex/ros/simulation_messages.h"
-#include "donex/simulation/simulator.h"
+#include "simulated_lidar/simulation_messages.h"
+#include "simulation/simulator.h"
 
 namespace donex::test {
 

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "donex/ros/cloud_layout.h"
 #include "ros/cloud_builder.h"
+#include "ros/cloud_layout.h"
 #include "ros/pipeline_rig.h"
 #include "support/counted_allocations.h"
 

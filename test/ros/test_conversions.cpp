@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "donex/ros/conversions.h"
 #include "ros/cloud_builder.h"
+#include "ros/conversions.h"
 
 namespace donex {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "donex/ros/simulation_messages.h"
-#include "donex/simulation/sensor_model.h"
-#include "donex/simulation/sweep.h"
 #include "ros/pipeline_rig.h"
+#include "simulated_lidar/simulation_messages.h"
+#include "simulation/sensor_model.h"
+#include "simulation/sweep.h"
 #include "support/simulated_drive.h"
 
 namespace donex {

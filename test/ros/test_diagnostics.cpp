@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <optional>
 
-#include "donex/ros/diagnostics.h"
+#include "ros/diagnostics.h"
 #include "ros/manager_rig.h"
 
 namespace donex {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "donex/ros/explanation_clouds.h"
+#include "ros/explanation_clouds.h"
 #include "ros/pipeline_rig.h"
 
 namespace donex {

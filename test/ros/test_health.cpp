@@ -1,7 +1,7 @@
 // The status line, fault by fault.
 #include <gtest/gtest.h>
 
-#include "donex/ros/health.h"
+#include "ros/health.h"
 
 namespace donex {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "donex/ros/markers.h"
+#include "ros/markers.h"
 
 namespace donex {
 namespace {

@@ -1,7 +1,7 @@
 // What a planner reads of the objects.
 #include <gtest/gtest.h>
 
-#include "donex/ros/object_messages.h"
+#include "ros/object_messages.h"
 
 namespace donex {
 namespace {

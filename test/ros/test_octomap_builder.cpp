@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include "donex/ros/octomap_builder.h"
-#include "donex/ros/simulation_messages.h"
-#include "donex/simulation/simulator.h"
+#include "ros/octomap_builder.h"
 #include "ros/pipeline_rig.h"
+#include "simulated_lidar/simulation_messages.h"
+#include "simulation/simulator.h"
 
 namespace donex {
 namespace {

@@ -10,10 +10,10 @@
 #include <donex/DonexConfig.h>
 #include <gtest/gtest.h>
 
-#include "donex/core/parameter_list.h"
-#include "donex/io/config_file.h"
-#include "donex/ros/parameter_files.h"
-#include "donex/ros/parameters.h"
+#include "donex/parameters.h"
+#include "io/config_file.h"
+#include "ros/parameter_files.h"
+#include "ros/parameters.h"
 
 namespace donex {
 namespace {

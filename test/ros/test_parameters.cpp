@@ -1,7 +1,7 @@
 // Strict reading: every fault is named, all at once, and nothing is taken silently.
 #include <gtest/gtest.h>
 
-#include "donex/ros/parameters.h"
+#include "ros/parameters.h"
 
 namespace donex {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "donex/io/config_file.h"
+#include "io/config_file.h"
 #include "ros/driver_clouds.h"
 #include "ros/pipeline_rig.h"
 

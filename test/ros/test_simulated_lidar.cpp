@@ -3,10 +3,10 @@
 
 #include <tf2_ros/transform_listener.h>
 
-#include "donex/ros/conversions.h"
-#include "donex/ros/simulated_lidar.h"
-#include "donex/ros/simulation_messages.h"
+#include "ros/conversions.h"
 #include "ros/manager_rig.h"
+#include "simulated_lidar/simulated_lidar.h"
+#include "simulated_lidar/simulation_messages.h"
 
 namespace donex {
 namespace {

@@ -1,8 +1,8 @@
 // What the simulated vehicle sends, read back.
 #include <gtest/gtest.h>
 
-#include "donex/ros/conversions.h"
-#include "donex/ros/simulation_messages.h"
+#include "ros/conversions.h"
+#include "simulated_lidar/simulation_messages.h"
 
 namespace donex {
 namespace {

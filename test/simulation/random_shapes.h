@@ -1,8 +1,8 @@
 // Random solids and rays for tests.
 #pragma once
 
-#include "donex/simulation/random.h"
-#include "donex/simulation/shape.h"
+#include "simulation/random.h"
+#include "simulation/shape.h"
 
 namespace donex::simulation {
 

@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "donex/simulation/ground.h"
-#include "donex/simulation/ground_window.h"
-#include "donex/simulation/random.h"
-#include "donex/simulation/sensor_model.h"
-#include "donex/simulation/shape.h"
+#include "simulation/ground.h"
+#include "simulation/ground_window.h"
+#include "simulation/random.h"
+#include "simulation/sensor_model.h"
+#include "simulation/shape.h"
 
 namespace donex::simulation {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "donex/simulation/model.h"
-#include "donex/simulation/sensor_model.h"
+#include "simulation/model.h"
+#include "simulation/sensor_model.h"
 
 namespace donex::simulation {
 namespace {

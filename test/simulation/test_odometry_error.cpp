@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "donex/simulation/odometry_error.h"
+#include "simulation/odometry_error.h"
 
 namespace donex::simulation {
 namespace {

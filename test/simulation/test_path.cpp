@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
-#include "donex/core/pi.h"
-#include "donex/simulation/path.h"
-#include "donex/simulation/random.h"
-#include "donex/simulation/speed_profile.h"
+#include "core/pi.h"
+#include "simulation/path.h"
+#include "simulation/random.h"
+#include "simulation/speed_profile.h"
 
 namespace donex::simulation {
 namespace {

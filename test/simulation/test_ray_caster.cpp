@@ -1,8 +1,8 @@
 // The fast answer against asking every target.
 #include <gtest/gtest.h>
 
-#include "donex/simulation/ray_caster.h"
 #include "random_shapes.h"
+#include "simulation/ray_caster.h"
 
 namespace donex::simulation {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "donex/simulation/scene.h"
-#include "donex/simulation/simulator.h"
+#include "simulation/scene.h"
+#include "simulation/simulator.h"
 
 namespace donex::simulation {
 namespace {

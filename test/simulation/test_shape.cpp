@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "donex/simulation/shape.h"
 #include "random_shapes.h"
+#include "simulation/shape.h"
 
 namespace donex::simulation {
 namespace {

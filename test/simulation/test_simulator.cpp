@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "donex/simulation/sensor_model.h"
-#include "donex/simulation/simulator.h"
+#include "simulation/sensor_model.h"
+#include "simulation/simulator.h"
 
 namespace donex::simulation {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "donex/core/judged_scan.h"
-#include "donex/core/scan.h"
-#include "donex/core/sight_history.h"
+#include "core/evidence/judged_scan.h"
+#include "core/sight/sight_history.h"
+#include "donex/scan.h"
 
 namespace donex::testing {
 

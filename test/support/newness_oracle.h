@@ -6,9 +6,9 @@
 #include <map>
 #include <vector>
 
-#include "donex/core/cell_layout.h"
-#include "donex/core/judged_scan.h"
-#include "donex/core/sight_history.h"
+#include "core/evidence/judged_scan.h"
+#include "core/grid/cell_layout.h"
+#include "core/sight/sight_history.h"
 #include "support/oracle.h"
 
 namespace donex::oracle {

@@ -6,8 +6,8 @@
 #include <set>
 #include <vector>
 
-#include "donex/core/grid_2d.h"
-#include "donex/core/grid_window.h"
+#include "core/grid/grid_2d.h"
+#include "core/grid/grid_window.h"
 
 namespace donex::oracle {
 

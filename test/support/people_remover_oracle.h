@@ -9,8 +9,8 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "donex/core/grid_window.h"
-#include "donex/core/people_remover.h"
+#include "core/grid/grid_window.h"
+#include "core/methods/people_remover.h"
 
 namespace donex::oracle {
 
@@ -150,8 +150,7 @@ class PeopleRemover {
 };
 
 inline std::vector<float> PeopleRemover::shadows(const std::vector<Eigen::Vector3f>& echoes,
-                                                 const std::vector<std::uint8_t>& is_echo, float diagonal,
-                                                 float fuzz) {
+                                                 const std::vector<std::uint8_t>& is_echo, float diagonal, float fuzz) {
   std::vector<std::pair<double, std::size_t>> nearest_first;
   std::vector<Eigen::Vector3d> directions(echoes.size(), Eigen::Vector3d::Zero());
   for (std::size_t i = 0; i < echoes.size(); ++i) {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "donex/core/scan.h"
+#include "donex/scan.h"
 
 namespace donex::testing {
 
@@ -33,16 +33,26 @@ class RandomScans {
   Eigen::Vector3f echo(const Scan& scan) {
     Eigen::Vector3f p(uniform(-reach_, reach_), uniform(-reach_, reach_), uniform(-reach_ / 3, reach_ / 3));
     const double kind = uniform(0, 1);
-    if (kind < 0.1) p[pick(3)] = 0.0F;                        // in a plane through the sensor
-    else if (kind < 0.2) p[pick(3)] = p[pick(3)] = 0.0F;      // often along an axis
-    else if (kind < 0.35) onFaces(p);
-    else if (kind < 0.45 && !scan.echoes.empty()) p = scan.echoes[pickEcho(scan)];
-    else if (kind < 0.50 && !scan.echoes.empty()) p = scan.echoes[pickEcho(scan)] * 0.5F;  // same line of sight
-    else if (kind < 0.55) p *= 3.0F;                          // outside the region
-    else if (kind < 0.58) p[pick(3)] = std::numeric_limits<float>::quiet_NaN();
-    else if (kind < 0.60) p[pick(3)] = std::numeric_limits<float>::infinity();
-    else if (kind < 0.61) p *= 1e6F;
-    else if (kind < 0.62) p.setZero();
+    if (kind < 0.1)
+      p[pick(3)] = 0.0F;  // in a plane through the sensor
+    else if (kind < 0.2)
+      p[pick(3)] = p[pick(3)] = 0.0F;  // often along an axis
+    else if (kind < 0.35)
+      onFaces(p);
+    else if (kind < 0.45 && !scan.echoes.empty())
+      p = scan.echoes[pickEcho(scan)];
+    else if (kind < 0.50 && !scan.echoes.empty())
+      p = scan.echoes[pickEcho(scan)] * 0.5F;  // same line of sight
+    else if (kind < 0.55)
+      p *= 3.0F;  // outside the region
+    else if (kind < 0.58)
+      p[pick(3)] = std::numeric_limits<float>::quiet_NaN();
+    else if (kind < 0.60)
+      p[pick(3)] = std::numeric_limits<float>::infinity();
+    else if (kind < 0.61)
+      p *= 1e6F;
+    else if (kind < 0.62)
+      p.setZero();
     return p;
   }
 

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "donex/io/sequence.h"
+#include "io/sequence.h"
 
 namespace donex::test {
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "donex/core/sight_image.h"
+#include "core/sight/sight_image.h"
 
 namespace donex::oracle {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "donex/core/detector.h"
-#include "donex/simulation/simulator.h"
+#include "donex/detector.h"
+#include "simulation/simulator.h"
 
 namespace donex::testing {
 

@@ -1,0 +1,62 @@
+// The one interface of every method: scans in, labels out.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "donex/config.h"
+#include "donex/explanation.h"
+#include "donex/object.h"
+#include "donex/scan.h"
+
+namespace donex {
+
+/// An axis-aligned box of the grid in a frame of its own.
+struct GridOutline {
+  Eigen::Isometry3d odom_from_grid = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d min_corner = Eigen::Vector3d::Zero();  ///< grid frame [m]
+  Eigen::Vector3d max_corner = Eigen::Vector3d::Zero();  ///< grid frame [m]
+};
+
+/// Labels the echoes of a stream of scans. Not thread-safe: one stream, one detector.
+class Detector {
+ public:
+  virtual ~Detector() = default;
+
+  /// Judges one scan. Stamps must not run backwards: the caller resets first (throws
+  /// std::invalid_argument otherwise, the memory is left untouched). Poses must be finite.
+  /// `labels` is overwritten and has one entry an echo.
+  virtual void process(const Scan& scan, EchoLabels& labels) = 0;
+
+  /// Forgets everything; the next scan is a first scan.
+  virtual void reset() = 0;
+
+  /// Objects of the last scan; empty where the method has none.
+  virtual const std::vector<Object>& objects() const = 0;
+
+  /// Centres of the cells that hold a dynamic echo of the last scan, odometry frame [m].
+  /// Computed on demand.
+  virtual std::vector<Eigen::Vector3f> dynamicCells() const = 0;
+
+  /// One an echo of the last scan; empty where the method cannot tell. Computed on demand.
+  virtual std::vector<EchoReason> reasons() const { return {}; }
+
+  /// Cells of the 3D methods; empty for the others. Computed on demand, once watched, for scans since then.
+  virtual MemoryCells memoryCells() const { return {}; }
+  /// Somebody wants memoryCells() of the coming scans: only then is kept what it needs.
+  virtual void watch(bool) {}
+
+  virtual GridOutline outline() const = 0;
+
+  /// Bytes held by the method's own memory.
+  virtual std::size_t memoryBytes() const = 0;
+};
+
+/// Throws std::invalid_argument that lists every fault of the configuration at once.
+void requireSound(const Config& config);
+
+/// Builds the method that `config.method` names. Throws as requireSound does, and for a method that cannot run live
+/// (whole_drive.h).
+std::unique_ptr<Detector> makeDetector(const Config& config);
+
+}  // namespace donex

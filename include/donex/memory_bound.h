@@ -1,0 +1,20 @@
+// How much memory a configuration takes, said before it is taken.
+#pragma once
+
+#include <cstddef>
+
+#include "donex/config.h"
+
+namespace donex {
+
+constexpr std::size_t kUsualScan = 120000;  // echoes; what a configuration is judged by
+
+/// What the detector of a sound configuration takes for scans of up to `echoes` echoes [bytes]; 0 echoes: before the
+/// first scan. Any configuration can be asked. On a grid that scrolls, Detector::memoryBytes comes to that within 10 %:
+///  - the paper's rule after the first scan, and it never grows;
+///  - with evidence once as many scans are kept as may be, as long as surfaces fill no more bricks than the ground plan
+///    has (a wood may). What a sensor does not cover is reserved, not used: the system gives less.
+/// For the methods for comparison, their dense grids alone.
+double memoryBound(const Config& config, std::size_t echoes);
+
+}  // namespace donex

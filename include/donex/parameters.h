@@ -1,0 +1,157 @@
+// Every parameter with its name, unit, range and meaning: the one place for them.
+#pragma once
+
+#include "donex/config.h"
+
+namespace donex {
+
+/// How a parameter is called and what it means.
+struct ParameterInfo {
+  const char* name;
+  const char* unit;     ///< empty where there is none
+  const char* meaning;  ///< one sentence
+  bool reconfigurable;  ///< also in dynamic_reconfigure
+};
+
+template <class Visitor>
+void visitClassifier(Config& config, Visitor& visit) {
+  visit(ParameterInfo{"method", "",
+                      "classifier: DONEX, the paper in 3D with a z-buffer for its see-through, or a system it is "
+                      "compared with (peopleremover judges whole drives only, never live)",
+                      true},
+        config.method);
+  visit(ParameterInfo{"voxel_size", "m", "edge length of a voxel", true}, config.voxel_size, 0.02, 2.0);
+  Region& r = config.region;
+  visit(ParameterInfo{"x_min", "m", "region of interest, vehicle frame, rear", true}, r.x_min, -500.0, 500.0);
+  visit(ParameterInfo{"x_max", "m", "region of interest, vehicle frame, front", true}, r.x_max, -500.0, 500.0);
+  visit(ParameterInfo{"y_min", "m", "region of interest, vehicle frame, right", true}, r.y_min, -500.0, 500.0);
+  visit(ParameterInfo{"y_max", "m", "region of interest, vehicle frame, left", true}, r.y_max, -500.0, 500.0);
+  visit(ParameterInfo{"z_min", "m", "region of interest, vehicle frame, bottom", true}, r.z_min, -100.0, 100.0);
+  visit(ParameterInfo{"z_max", "m", "region of interest, vehicle frame, top", true}, r.z_max, -100.0, 100.0);
+  visit(ParameterInfo{"compensation", "",
+                      "voxel shift of the paper: scroll the grid along the axes of the odometry frame, or resample its "
+                      "contents into the vehicle frame; with evidence the grid always scrolls",
+                      true},
+        config.compensation);
+  visit(ParameterInfo{"memory_limit", "MB",
+                      "most that the grid may take with scans of 120,000 echoes; what it needs follows from region "
+                      "and voxel size",
+                      true},
+        config.memory_limit, 10, 100000);
+  visit(ParameterInfo{"threads", "", "threads that the grids of the paper may use; labels do not depend on it", true},
+        config.threads, 1, 64);
+}
+
+template <class Visitor>
+void visitEvidence(EvidenceConfig& e, Visitor& visit) {
+  visit(ParameterInfo{"free_evidence", "", "a place counts as new only where earlier scans saw it free", true},
+        e.free_evidence);
+  visit(ParameterInfo{"free_scans", "scans", "scans that must have seen a place free", true}, e.free_scans, 1, 20);
+  visit(ParameterInfo{"history_length", "s", "how long the lines of sight of a scan are remembered", true},
+        e.history_length, 0.1, 10.0);
+  visit(ParameterInfo{"sight_margin", "m", "how far behind a place a line of sight must end to see it free", true},
+        e.sight_margin, 0.0, 5.0);
+  visit(ParameterInfo{"careful_sight", "",
+                      "read the nearest of neighbouring lines of sight, so grazed surfaces are not seen free, and "
+                      "several scans to free a settled voxel",
+                      true},
+        e.careful_sight);
+  visit(ParameterInfo{"sight_gap", "deg", "largest angle between two beams that are read as neighbours", true},
+        e.sight_gap, 0.1, 10.0);
+  visit(ParameterInfo{"settled_free_scans", "scans",
+                      "scans that must have seen a settled voxel free before it counts as new again", true},
+        e.settled_free_scans, 1, 50);
+  visit(ParameterInfo{"birth_age", "", "a voxel stays new for a while after its birth, not for one scan only", true},
+        e.birth_age);
+  visit(ParameterInfo{"birth_window", "s", "how long a voxel stays new; older ones are settled", true}, e.birth_window,
+        0.0, 10.0);
+  visit(
+      ParameterInfo{"neighbourhood", "", "a new voxel that touches settled ones is a surface on a voxel border", true},
+      e.neighbourhood);
+  visit(ParameterInfo{"ground", "", "echoes on the local ground are never dynamic", true}, e.ground);
+  visit(ParameterInfo{"ground_clearance", "m", "height above the local ground below which an echo is ground", true},
+        e.ground_clearance, 0.0, 2.0);
+}
+
+template <class Visitor>
+void visitObjects(ObjectConfig& o, Visitor& visit) {
+  visit(ParameterInfo{"objects", "", "connected echoes are judged together and followed over time", true}, o.enabled);
+  visit(ParameterInfo{"object_cell", "m", "edge of the cells whose touching connects echoes", true}, o.cell, 0.1, 2.0);
+  visit(ParameterInfo{"object_height", "m", "echoes higher above ground belong to no object", true}, o.height, 0.5,
+        20.0);
+  visit(ParameterInfo{"object_min_echoes", "echoes", "new echoes that an object must have to be dynamic", true},
+        o.min_echoes, 1, 1000);
+  visit(
+      ParameterInfo{"object_new_share", "", "share of new among the new and settled echoes of a dynamic object", true},
+      o.new_share, 0.0, 1.0);
+  visit(ParameterInfo{"object_motion", "",
+                      "an object moves also where its former place is now seen free, or its former shape is found "
+                      "elsewhere; off: only new echoes tell",
+                      true},
+        o.motion);
+  visit(
+      ParameterInfo{"object_stop_time", "s", "an object without evidence of motion stays dynamic for this long", true},
+      o.stop_time, 0.0, 30.0);
+}
+
+template <class Visitor>
+void visitMotion(MotionConfig& m, Visitor& visit) {
+  visit(ParameterInfo{"odometry_source", "",
+                      "ego motion: odometry pose, odometry twist integrated, tf, or none for a sensor at rest", false},
+        m.source);
+  visit(ParameterInfo{"fixed_frame", "",
+                      "frame of the motion with odometry_source tf; otherwise the odometry's own frame is used", false},
+        m.fixed_frame);
+  visit(ParameterInfo{"base_frame", "", "vehicle frame; the odometry's child frame where it names one", false},
+        m.base_frame);
+  visit(ParameterInfo{"max_extrapolation", "s", "how far beyond the newest odometry a pose may be extrapolated", false},
+        m.max_extrapolation, 0.0, 0.5);
+  visit(ParameterInfo{"odometry_timeout", "s", "how long a cloud waits for odometry that covers its stamp", false},
+        m.odometry_timeout, 0.0, 10.0);
+  visit(ParameterInfo{"deskew", "", "move each echo to the cloud's stamp by its own time, where the cloud carries one",
+                      false},
+        m.deskew);
+}
+
+template <class Visitor>
+void visitCloud(CloudConfig& c, Visitor& visit) {
+  visit(ParameterInfo{"time_field", "",
+                      "field of the clouds that holds each echo's own time; empty: time, t, offset_time or timestamp, "
+                      "whichever is there",
+                      false},
+        c.time_field);
+  visit(ParameterInfo{"time_encoding", "", "what time_field holds; auto: as the known drivers write it", false},
+        c.time_encoding);
+  visit(ParameterInfo{"origin_x", "m",
+                      "where the sensor sits in the frame of the clouds: lines of sight begin here; other than 0 only "
+                      "for clouds that were merged or transformed",
+                      false},
+        c.origin_x, -100.0, 100.0);
+  visit(ParameterInfo{"origin_y", "m", "as origin_x", false}, c.origin_y, -100.0, 100.0);
+  visit(ParameterInfo{"origin_z", "m", "as origin_x", false}, c.origin_z, -100.0, 100.0);
+}
+
+template <class Visitor>
+void visitNode(NodeConfig& n, Visitor& visit) {
+  visit(ParameterInfo{"queue_size", "clouds", "clouds that may wait for odometry; the oldest is dropped beyond", false},
+        n.queue_size, 1, 1000);
+  visit(ParameterInfo{"markers", "", "publish ~markers at all", true}, n.markers);
+  visit(ParameterInfo{"marker_cells", "", "markers of dynamic cells", true}, n.marker_cells);
+  visit(ParameterInfo{"marker_objects", "", "markers of objects and their velocities", true}, n.marker_objects);
+  visit(ParameterInfo{"marker_grid", "", "marker of the outline of the grid", true}, n.marker_grid);
+}
+
+/// Shows `visit` every parameter, in the order of the documentation, as one of
+///   visit(info, double&, min, max)   visit(info, int&, min, max)   visit(info, bool&)
+///   visit(info, std::string&)        visit(info, Enum&)  with namesOf(Enum) as its values.
+template <class Visitor>
+void visitParameters(Config& config, Visitor&& visit) {
+  visitClassifier(config, visit);
+  visitEvidence(config.evidence, visit);
+  visitObjects(config.objects, visit);
+  visitMotion(config.motion, visit);
+  visitCloud(config.cloud, visit);
+  visitNode(config.node, visit);
+}
+
+}  // namespace donex

@@ -1,0 +1,193 @@
+#include "core/evidence/ground.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Cholesky>
+
+#include "core/grid/simd.h"
+#include "core/grid/storage.h"
+
+namespace donex {
+namespace {
+
+constexpr float kCell = 0.8F;        // [m]
+constexpr int kReach = 2;            // cells over which the ground is continued
+constexpr float kRoughness = 0.15F;  // [m] ground may fall this much from cell to cell anyway: kerbs
+constexpr float kSlope = 0.08F;      // and this much a metre since it was last seen
+// It may rise less: where a vehicle hides the ground, its sill is the lowest echo.
+constexpr float kKerb = 0.14F;  // [m]
+constexpr float kRise = 0.03F;
+constexpr float kLargestStep = 0.4F;       // [m] never more
+constexpr float kStartUncertainty = 4.0F;  // [m] as if the ground had been seen last this far away
+constexpr float kStartRadius = 7.0F;       // [m] the cells in it tell where the ground starts,
+constexpr std::size_t kStartCells = 24;    // but never fewer than these
+constexpr std::array<float, 3> kStartReach = {0.6F, 0.3F, 0.15F};  // [m] off the plane so far
+constexpr double kLevelling = 50.0;                                // [m^2] as if so much spoke for level ground
+constexpr float kNone = std::numeric_limits<float>::infinity();
+
+/// The number of every echo's cell, or -1 outside the map.
+DONEX_WIDE_LOOPS void findCells(const Eigen::Vector3f& sensor, int width, const Eigen::Vector3f* echoes,
+                                std::size_t count, int* cells) {
+  const float sensor_x = sensor.x(), sensor_y = sensor.y();
+  const auto* xyz = reinterpret_cast<const float*>(echoes);
+  const int middle = width / 2;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float across = std::floor((xyz[3 * i] - sensor_x) / kCell + 0.5F);
+    const float along = std::floor((xyz[3 * i + 1] - sensor_y) / kCell + 0.5F);
+    const auto half = static_cast<float>(middle);
+    const bool inside =
+        static_cast<int>(std::abs(across) <= half) & static_cast<int>(std::abs(along) <= half);  // not NaN
+    const int x = static_cast<int>(inside ? across : 0.0F) + middle,
+              y = static_cast<int>(inside ? along : 0.0F) + middle;
+    cells[i] = inside ? y * width + x : -1;
+  }
+}
+
+}  // namespace
+
+int Ground::widthOf(double reach) { return 2 * static_cast<int>(std::ceil(reach / static_cast<double>(kCell))) + 1; }
+
+Ground::Ground(double reach) : width_(widthOf(reach)) {
+  const auto cells = static_cast<std::size_t>(width_) * static_cast<std::size_t>(width_);
+  lowest_.resize(cells);
+  ground_.resize(cells, kNone);
+  unseen_.resize(cells, 0.0F);
+  outwards_.reserve(cells);
+  for (int y = -kReach; y <= kReach; ++y) {
+    for (int x = -kReach; x <= kReach; ++x) {
+      around_.push_back({x, y, y * width_ + x, kCell * std::sqrt(static_cast<float>(x * x + y * y)), 0.0F});
+    }
+  }
+  for (int y = -(width_ / 2); y <= width_ / 2; ++y) {
+    for (int x = -(width_ / 2); x <= width_ / 2; ++x) {
+      outwards_.push_back({static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), neighboursNearerTo(x, y)});
+    }
+  }
+  std::stable_sort(outwards_.begin(), outwards_.end(),
+                   [](const Cell& a, const Cell& b) { return a.squaredDistance() < b.squaredDistance(); });
+}
+
+std::uint32_t Ground::neighboursNearerTo(int x, int y) const {
+  static_assert((2 * kReach + 1) * (2 * kReach + 1) <= 32);
+  std::uint32_t nearer = 0;
+  for (std::size_t i = 0; i < around_.size(); ++i) {
+    const int nx = x + around_[i].x, ny = y + around_[i].y;
+    const bool in_map = std::max(std::abs(nx), std::abs(ny)) <= width_ / 2;
+    if (in_map && nx * nx + ny * ny < x * x + y * y) nearer |= std::uint32_t{1} << i;
+  }
+  return nearer;
+}
+
+Eigen::Vector2f Ground::offsetOf(const Cell& cell) { return kCell * Eigen::Vector2f(cell.x, cell.y); }
+
+void Ground::estimate(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
+                      const std::vector<std::uint8_t>& is_echo) {
+  sensor_ = sensor;
+  std::fill(lowest_.begin(), lowest_.end(), kNone);
+  std::fill(ground_.begin(), ground_.end(), kNone);
+  resizeTo(cell_of_, echoes.size());
+  findCells(sensor_, width_, echoes.data(), echoes.size(), cell_of_.data());
+  for (std::size_t i = 0; i < echoes.size(); ++i) {
+    if (is_echo[i] == 0 || cell_of_[i] < 0) continue;
+    float& lowest = lowest_[static_cast<std::size_t>(cell_of_[i])];
+    lowest = std::min(lowest, echoes[i].z());
+  }
+  if (!findStart()) return;
+  // The slope around the sensor goes on.
+  for (Neighbour& by : around_) {
+    by.climb = kCell * (start_.x() * static_cast<float>(by.x) + start_.y() * static_cast<float>(by.y));
+  }
+  for (const Cell& cell : outwards_) {
+    const std::size_t i = indexOf(cell.x, cell.y);
+    const Continuation expected = continueTo(cell);
+    const float down = std::min(kRoughness + kSlope * expected.unseen, kLargestStep);
+    const float rise = std::min(kKerb + kRise * expected.unseen, kLargestStep);
+    const float step = lowest_[i] - expected.height;
+    const bool continues = step > -down && step < rise;
+    ground_[i] = continues ? lowest_[i] : expected.height;
+    unseen_[i] = continues ? 0.0F : expected.unseen;
+  }
+}
+
+bool Ground::findStart() {
+  near_.clear();
+  constexpr auto kRadius = static_cast<int>(kStartRadius / kCell);
+  for (const Cell& cell : outwards_) {
+    const bool enough = near_.size() >= kStartCells && cell.squaredDistance() > kRadius * kRadius;
+    if (enough) break;
+    const float lowest = lowest_[indexOf(cell.x, cell.y)];
+    const Eigen::Vector2f offset = offsetOf(cell);
+    if (lowest != kNone) near_.emplace_back(offset.x(), offset.y(), lowest);
+  }
+  if (near_.empty()) return false;
+  // A third from below: passes by stray echoes beneath the ground, and by parked cars on both sides.
+  const auto third = near_.begin() + static_cast<std::ptrdiff_t>(near_.size() / 3);
+  std::nth_element(near_.begin(), third, near_.end(), [](const auto& a, const auto& b) { return a.z() < b.z(); });
+  start_ = Eigen::Vector3f(0.0F, 0.0F, third->z());
+  // On a slope that is a height among many: a plane through what lies near it, then nearer, follows.
+  for (const float reach : kStartReach) start_ = fitStart(reach);
+  return true;
+}
+
+Eigen::Vector3f Ground::fitStart(float reach) const {
+  // Least squares, drawn to level ground and to the height so far where little speaks for a plane.
+  Eigen::Matrix3d normal = Eigen::Vector3d(kLevelling, kLevelling, 1e-6).asDiagonal();
+  Eigen::Vector3d right = 1e-6 * start_.cast<double>();
+  for (const Eigen::Vector3f& cell : near_) {
+    if (std::abs(cell.z() - startAt(cell.head<2>())) > reach) continue;
+    const Eigen::Vector3d row(cell.x(), cell.y(), 1.0);
+    normal += row * row.transpose();
+    right += row * cell.z();
+  }
+  return normal.ldlt().solve(right).cast<float>();
+}
+
+Ground::Continuation Ground::continueTo(const Cell& cell) const {
+  const std::size_t here = indexOf(cell.x, cell.y);
+  float sum = 0.0F, weights = 0.0F, unseen = kNone;
+  for (std::uint32_t nearer = cell.nearer; nearer != 0; nearer &= nearer - 1) {
+    const Neighbour& by = around_[static_cast<std::size_t>(__builtin_ctz(nearer))];
+    const std::size_t neighbour = here + static_cast<std::size_t>(by.offset);
+    const float since_seen = unseen_[neighbour] + by.away;
+    const float weight = 1.0F / (since_seen * since_seen);
+    sum += weight * (ground_[neighbour] - by.climb);
+    weights += weight;
+    unseen = std::min(unseen, since_seen);
+  }
+  if (weights > 0.0F) return {sum / weights, unseen};
+  return {startAt(offsetOf(cell)), kStartUncertainty};
+}
+
+float Ground::heightOf(const Eigen::Vector3f& point) const {
+  int cell = -1;
+  findCells(sensor_, width_, &point, 1, &cell);
+  return heightIn(cell, point.z());
+}
+
+void Ground::heightsOf(const std::vector<Eigen::Vector3f>& echoes, std::vector<float>& heights) const {
+  resizeTo(heights, echoes.size());
+  for (std::size_t i = 0; i < echoes.size(); ++i) heights[i] = heightIn(cell_of_[i], echoes[i].z());
+}
+
+float Ground::heightIn(int cell, float z) const {
+  if (cell < 0) return kNone;
+  const float ground = ground_[static_cast<std::size_t>(cell)];
+  return ground == kNone ? kNone : z - ground;
+}
+
+double Ground::bytesFor(double reach, double echoes) {
+  const double cells = std::pow(widthOf(reach), 2);
+  return cells * (sizeof(Cell) + 3 * sizeof(float)) + roomFor(echoes * sizeof(int));
+}
+
+std::size_t Ground::memoryBytes() const {
+  return outwards_.capacity() * sizeof(Cell) + around_.capacity() * sizeof(Neighbour) +
+         cell_of_.capacity() * sizeof(int) +
+         (lowest_.capacity() + ground_.capacity() + unseen_.capacity()) * sizeof(float) +
+         near_.capacity() * sizeof(Eigen::Vector3f);
+}
+
+}  // namespace donex

@@ -1,0 +1,153 @@
+#include "core/evidence/newness.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace donex {
+namespace {
+
+constexpr double kFoundWindow = 0.5;  // [s]
+constexpr double kBeforeEverything = -std::numeric_limits<double>::infinity();
+/// A settled voxel counts as a neighbouring surface while it was hit within this many scans.
+constexpr std::uint32_t kRecentScans = 4;
+
+}  // namespace
+
+ScanClock::ScanClock(double birth_window)
+    : new_window_(birth_window), found_window_(std::min(birth_window, kFoundWindow)) {}
+
+void ScanClock::begin(double stamp) {
+  ++scan_;
+  stamps_[scan_ % kRememberedStamps] = stamp;
+  advance(new_since_, new_window_);
+  advance(found_since_, found_window_);
+}
+
+void ScanClock::advance(std::uint32_t& since, double window) const {
+  while (since < scan_ && stampOf(since) < stampOf(scan_) - window) ++since;
+}
+
+void ScanClock::reset() {
+  scan_ = 0;
+  new_since_ = found_since_ = 1;
+}
+
+double ScanClock::stampOf(std::uint32_t scan) const {
+  const bool is_remembered = scan > 0 && scan_ - scan < kRememberedStamps;
+  if (!is_remembered) return kBeforeEverything;
+  return stamps_[scan % kRememberedStamps];
+}
+
+bool wasFree(const EvidenceConfig& config, const SightHistory& history, const Eigen::Vector3f& point, double since,
+             bool known, bool settled) {
+  if (!config.free_evidence && !known) return true;  // the paper: never hit is new
+  const int unsettled = config.free_evidence ? config.free_scans : 1;
+  const int needed = settled && config.careful_sight ? config.settled_free_scans : unsettled;
+  return history.ask(point, since, needed).free >= needed;
+}
+
+Place Newness3d::judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& point, const ScanClock& clock,
+                       const SightHistory& history) {
+  const Index3 voxel = voxelOf(in_window);
+  VoxelRecord& record = memory_.at(voxel);
+  if (record.last_hit != clock.scan()) {
+    const bool settled = record.occupied() && !clock.isYoung(record.birth, record.was_free);
+    const bool missed = record.last_hit + 1 < clock.scan();
+    // De-shadowing, asked where the answer matters: only a voxel that is hit again after a gap.
+    const double since = record.occupied() ? clock.stampOf(record.last_hit) : kBeforeEverything;
+    const bool was_free = missed && wasFree(config_, history, point, since, record.occupied(), settled);
+    if (!record.occupied() || was_free) {
+      record.birth = clock.scan();
+      record.was_free = was_free;
+      record.at_surface = was_free && config_.neighbourhood && touchesSettled(voxel, clock);
+    }
+    record.last_hit = clock.scan();
+  }
+  if (!clock.isYoung(record.birth, record.was_free)) return Place::kSettled;
+  if (record.at_surface) return Place::kAtSurface;
+  return record.was_free ? Place::kNew : Place::kUnobserved;
+}
+
+bool Newness3d::touchesSettled(const Index3& voxel, const ScanClock& clock) const {
+  for (int z = -1; z <= 1; ++z) {
+    for (int y = -1; y <= 1; ++y) {
+      for (int x = -1; x <= 1; ++x) {
+        const Index3 neighbour = voxel + Index3(x, y, z);
+        if (neighbour == voxel || !window().contains(neighbour)) continue;
+        const VoxelRecord* record = memory_.find(neighbour);
+        const bool is_surface = record != nullptr && !clock.isYoung(record->birth, record->was_free) &&
+                                record->last_hit + kRecentScans > clock.scan();
+        if (is_surface) return true;
+      }
+    }
+  }
+  return false;
+}
+
+Newness2d::Newness2d(const Config& config)
+    : config_(config.evidence), window_(config), cells_layout_(window_), cells_(cells_layout_.slots()) {}
+
+void Newness2d::shift(const Eigen::Isometry3d& odom_from_base) {
+  cells_layout_.scroll(window_, odom_from_base, [&](std::uint32_t slot) { cells_[slot] = Cell{}; });
+}
+
+void Newness2d::reset() {
+  std::fill(cells_.begin(), cells_.end(), Cell{});
+  cells_layout_.reset();
+}
+
+void Newness2d::settle(Cell& cell, const ScanClock& clock) const {
+  const auto settle_range = [&](HeightRange& range, std::uint32_t birth, bool was_free) {
+    if (range.empty() || clock.isYoung(birth, was_free)) return;
+    cell.settled.extend(range);
+    range = HeightRange{};
+  };
+  settle_range(cell.arrived, cell.arrived_birth, true);
+  settle_range(cell.found, cell.found_birth, false);
+  if (cell.found.empty()) cell.at_surface = HeightRange{};
+}
+
+Place Newness2d::judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& point, const ScanClock& clock,
+                       const SightHistory& history) {
+  const Index3 voxel = voxelOf(in_window);
+  const float height = cells_layout_.heightOf(in_window);
+  Cell& cell = cellAt(voxel.x(), voxel.y());
+  if (cell.last_hit != clock.scan()) {
+    settle(cell, clock);
+    cell.hit_before = cell.last_hit;
+    cell.last_hit = clock.scan();
+  }
+  const bool is_first_scan = clock.scan() == 1;
+  const bool missed = cell.hit_before + 1 < clock.scan() && !is_first_scan;
+  const double since = cell.hit_before != 0 ? clock.stampOf(cell.hit_before) : kBeforeEverything;
+  if (cell.settled.holds(height)) {
+    // De-shadowing, asked where the answer matters: only in a cell that is hit again after a gap.
+    const bool has_left = missed && wasFree(config_, history, point, since, true, true);
+    if (!has_left) return Place::kSettled;
+    cell.settled = HeightRange{};
+  }
+  if (cell.arrived.holds(height)) return Place::kNew;
+  if (cell.found.holds(height) && !missed) return cell.placeInFound(height);
+  const bool was_free = !is_first_scan && wasFree(config_, history, point, kBeforeEverything, false, false);
+  const bool at_surface = was_free && config_.neighbourhood && touchesSettled(voxel.x(), voxel.y(), height);
+  const bool comes = was_free && !at_surface;
+  HeightRange& range = comes ? cell.arrived : cell.found;
+  std::uint32_t& birth = comes ? cell.arrived_birth : cell.found_birth;
+  if (range.empty()) birth = clock.scan();
+  range.extend(height);
+  if (at_surface) cell.at_surface.extend(height);
+  return comes ? Place::kNew : cell.placeInFound(height);
+}
+
+bool Newness2d::touchesSettled(int x, int y, float height) const {
+  for (int ny = y - 1; ny <= y + 1; ++ny) {
+    for (int nx = x - 1; nx <= x + 1; ++nx) {
+      if (nx < 0 || ny < 0 || nx >= window_.extent().x() || ny >= window_.extent().y()) continue;
+      const HeightRange& settled = cells_[cells_layout_.slotOf(nx, ny)].settled;
+      if (height >= settled.lo - 1.0F && height <= settled.hi + 1.0F) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace donex

@@ -1,0 +1,214 @@
+#include "core/grid/grid_3d.h"
+
+#include <algorithm>
+#include <array>
+
+namespace donex {
+namespace {
+
+constexpr std::uint64_t kAll = ~std::uint64_t{0};
+constexpr int kAhead = 12;  // bricks are asked of memory so many echoes before they are needed
+
+std::uint64_t maskOf(std::uint32_t bit) { return std::uint64_t{1} << bit; }
+
+}  // namespace
+
+Grid3d::Grid3d(const Config& config)
+    : window_(config),
+      layout_(window_.extent()),
+      bricks_(layout_.slots() + 1),
+      workers_(config.threads),
+      parts_(static_cast<std::size_t>(config.threads)) {
+  bricks_.back().remembered = kAll;  // what is outside is never new
+  for (std::size_t i = 1; i < parts_.size(); ++i) {
+    parts_[i].hit.resize(bricks_.size());
+    parts_[i].touched.reserve(layout_.slots() / kSlotsAUsedBrick);
+  }
+  used_.reserve(layout_.slots() / kSlotsAUsedBrick);
+  layout_.scrollTo(window_.minIndex());
+}
+
+void Grid3d::shift(const Eigen::Isometry3d& odom_from_base) {
+  if (window_.compensation() == Compensation::kScroll) {
+    scroll(odom_from_base);
+  } else {
+    resample(odom_from_base);
+  }
+}
+
+void Grid3d::scroll(const Eigen::Isometry3d& odom_from_base) {
+  const Index3 before = window_.minIndex();
+  window_.moveTo(odom_from_base);
+  if (window_.minIndex() == before) return;
+  const auto leaves = [&](const Used& used) {
+    const bool stays = window_.contains(used.corner - window_.minIndex());
+    if (!stays) bricks_[used.slot] = Brick{};
+    return !stays;
+  };
+  used_.erase(std::remove_if(used_.begin(), used_.end(), leaves), used_.end());
+  layout_.scrollTo(window_.minIndex());
+}
+
+void Grid3d::resample(const Eigen::Isometry3d& odom_from_base) {
+  window_.moveTo(odom_from_base);
+  const Eigen::Isometry3d grid_from_odom = window_.odomFromGrid().inverse();
+  clearBricks();
+  std::size_t kept = 0;
+  for (Content& content : contents_) {
+    const Eigen::Vector3d in_grid = grid_from_odom * content.in_odom / window_.voxelSize();
+    const Index3 voxel = in_grid.array().floor().cast<int>().matrix() - window_.minIndex();
+    if (!window_.contains(voxel)) continue;
+    content.at = layout_.locate(voxel);
+    Brick& brick = brickAt(content.at.slot, voxel);
+    // Two contents in one voxel: the older stays, so a content never moves by another's residual.
+    if ((brick.remembered & maskOf(content.at.bit)) != 0) continue;
+    brick.remembered |= maskOf(content.at.bit);
+    contents_[kept++] = content;
+  }
+  contents_.resize(kept);
+}
+
+/// The brick of a voxel of the window, listed as used.
+Grid3d::Brick& Grid3d::brickAt(std::uint32_t slot, const Index3& in_window) {
+  Brick& brick = bricks_[slot];
+  const bool is_empty = (brick.remembered | brick.hit) == 0;
+  if (is_empty) used_.push_back(usedAt(slot, in_window));
+  return brick;
+}
+
+Grid3d::Used Grid3d::usedAt(std::uint32_t slot, const Index3& in_window) const {
+  return {slot, (in_window + window_.minIndex()).unaryExpr([](int i) { return i & ~3; })};
+}
+
+void Grid3d::take(const Scan& scan, EchoLabels& labels) {
+  const Placement placement = window_.placementOf(scan);
+  rays_.begin(placement, scan.echoes, parts_.size());
+  hit(scan, placement, labels,
+      [&](std::size_t part, std::size_t first, const EchoBlock& block) { rays_.add(part, first, block); });
+  rays_.finish(workers_);
+  remember([&](std::uint64_t candidates, const Index3& corner) { return rays_.seenThrough(candidates, corner); });
+}
+
+void Grid3d::hit(std::size_t part, std::size_t first, const EchoBlock& block, EchoLabels& labels) {
+  BlockSlots at;
+  layout_.locate(block, at);
+  const auto in_first_part = [&](int i) -> std::uint64_t& {
+    Brick& brick = bricks_[at.slot[i]];
+    if ((brick.remembered | brick.hit) == 0) brickAt(at.slot[i], block.voxel(i));
+    return brick.hit;
+  };
+  const auto in_other_part = [&, &own = parts_[part]](int i) -> std::uint64_t& {
+    std::uint64_t& hit = own.hit[at.slot[i]];
+    if (hit == 0) own.touched.push_back(usedAt(at.slot[i], block.voxel(i)));
+    return hit;
+  };
+  part == 0 ? hit(parts_[part], first, block, at, labels, in_first_part)
+            : hit(parts_[part], first, block, at, labels, in_other_part);
+}
+
+/// `hit_of(i)`: the part's own hits in the brick of the block's entry i.
+template <class HitOf>
+void Grid3d::hit(Part& part, std::size_t first, const EchoBlock& block, const BlockSlots& at, EchoLabels& labels,
+                 HitOf&& hit_of) {
+  const bool keeps_order = window_.compensation() == Compensation::kResample;
+  std::uint8_t* dynamic = labels.dynamic.data() + first;
+  std::array<int, EchoBlock::kSize + 1> new_echoes;  // not set: a block's worth of it is written each time
+  int new_count = 0;
+  for (int i = 0; i < block.count; ++i) {
+    if (i + kAhead < EchoBlock::kSize) __builtin_prefetch(&bricks_[at.slot[i + kAhead]], 1);
+    const std::uint64_t mask = maskOf(at.bit[i]);
+    const bool is_new = (bricks_[at.slot[i]].remembered & mask) == 0;
+    std::uint64_t& hit = hit_of(i);
+    if (keeps_order && block.inside[i] != 0 && (hit & mask) == 0) part.hit_voxels.push_back(block.voxel(i));
+    hit |= mask;
+    dynamic[i] = is_new ? 1 : 0;
+    new_echoes[new_count] = i;
+    new_count += is_new ? 1 : 0;  // written in any case: no branch to guess
+  }
+  std::copy_n(block.observed.data(), block.count, labels.observed.data() + first);
+  part.echoes.add(first, block, new_echoes.data(), new_count);
+}
+
+void Grid3d::Part::begin(std::size_t most_echoes) {
+  echoes.begin(most_echoes);
+  hit_voxels.clear();
+}
+
+void Grid3d::takeOver(Part& part) {
+  std::vector<Index3>& in_order = parts_.front().hit_voxels;
+  for (const Index3& voxel : part.hit_voxels) {
+    const BrickBit at = layout_.locate(voxel);
+    if ((bricks_[at.slot].hit & maskOf(at.bit)) == 0) in_order.push_back(voxel);
+  }
+  for (std::size_t i = 0; i < part.touched.size(); ++i) {
+    if (i + kAhead < part.touched.size()) {
+      __builtin_prefetch(&bricks_[part.touched[i + kAhead].slot], 1);
+      __builtin_prefetch(&part.hit[part.touched[i + kAhead].slot], 1);
+    }
+    const Used& touched = part.touched[i];
+    Brick& brick = bricks_[touched.slot];
+    if ((brick.remembered | brick.hit) == 0) used_.push_back(touched);
+    brick.hit |= part.hit[touched.slot];
+    part.hit[touched.slot] = 0;
+  }
+  part.touched.clear();
+}
+
+/// A hit voxel starts anew from its centre; one in the shadow keeps the residual it carries.
+void Grid3d::forgetHitContents() {
+  const auto is_hit = [&](const Content& content) {
+    return (bricks_[content.at.slot].hit & maskOf(content.at.bit)) != 0;
+  };
+  contents_.erase(std::remove_if(contents_.begin(), contents_.end(), is_hit), contents_.end());
+}
+
+void Grid3d::rememberContents() {
+  const auto is_forgotten = [&](const Content& content) {
+    return (bricks_[content.at.slot].remembered & maskOf(content.at.bit)) == 0;
+  };
+  contents_.erase(std::remove_if(contents_.begin(), contents_.end(), is_forgotten), contents_.end());
+  for (const Index3& voxel : parts_.front().hit_voxels) {
+    contents_.push_back({window_.odomFromGrid() * window_.indexToCenter(voxel), layout_.locate(voxel)});
+  }
+}
+
+void Grid3d::clearBricks() {
+  for (const Used& used : used_) bricks_[used.slot] = Brick{};
+  used_.clear();
+}
+
+void Grid3d::reset() {
+  clearBricks();
+  rays_.reset();
+  contents_.clear();
+  for (Part& part : parts_) part.echoes.clear();
+}
+
+std::vector<Index3> Grid3d::remembered() const {
+  std::vector<Index3> voxels;
+  for (const Used& used : used_) {
+    for (std::uint64_t word = bricks_[used.slot].remembered; word != 0; word &= word - 1) {
+      voxels.push_back(BrickLayout::voxelOfBit(used.corner - window_.minIndex(), __builtin_ctzll(word)));
+    }
+  }
+  return voxels;
+}
+
+double Grid3d::bytesFor(double slots, double echoes, int threads) {
+  constexpr double kUsedASlot = static_cast<double>(sizeof(Used)) / kSlotsAUsedBrick;
+  const double more_parts = threads - 1;
+  return slots * (sizeof(Brick) + kUsedASlot + more_parts * (sizeof(std::uint64_t) + kUsedASlot)) +
+         RayIndex::bytesFor(echoes, threads) + TakenEchoes::bytesFor(echoes);
+}
+
+std::size_t Grid3d::memoryBytes() const {
+  std::size_t bytes = bricks_.capacity() * sizeof(Brick) + used_.capacity() * sizeof(Used) + rays_.memoryBytes() +
+                      contents_.capacity() * sizeof(Content);
+  for (const Part& part : parts_) {
+    bytes += part.echoes.memoryBytes() + part.hit_voxels.capacity() * sizeof(Index3) +
+             part.hit.capacity() * sizeof(std::uint64_t) + part.touched.capacity() * sizeof(Used);
+  }
+  return bytes;
+}
+
+}  // namespace donex

@@ -1,0 +1,135 @@
+#include "core/grid/grid_window.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/grid/storage.h"
+
+namespace donex {
+namespace {
+
+/// The vehicle may lean this far before echoes at the region's far end leave a scrolling grid [sin].
+constexpr double kLargestTilt = 0.17;  // 10 degrees
+
+int floorToBrick(double voxels) {
+  return GridWindow::kBrick * static_cast<int>(std::floor(voxels / GridWindow::kBrick));
+}
+
+/// The region, as a box around the vehicle in which it stays however the vehicle turns [m].
+Region sweptRegion(const Region& r) {
+  const double reach = reachOf(r);
+  const double rise = kLargestTilt * reach;
+  return {-reach, reach, -reach, reach, r.z_min - rise, r.z_max + rise};
+}
+
+Region coveredRegion(const Config& config) {
+  return config.compensation == Compensation::kScroll ? sweptRegion(config.region) : config.region;
+}
+
+}  // namespace
+
+double reachOf(const Region& region) {
+  return std::hypot(std::max(-region.x_min, region.x_max), std::max(-region.y_min, region.y_max));
+}
+
+Eigen::Vector3d GridWindow::extentOf(const Config& config) {
+  const Region covered = coveredRegion(config);
+  const Eigen::Array3d size(covered.x_max - covered.x_min, covered.y_max - covered.y_min,
+                            covered.z_max - covered.z_min);
+  // One brick more than the region: the window's lower corner is rounded down to whole bricks.
+  return kBrick * ((size / (config.voxel_size * kBrick)).ceil() + 1.0);
+}
+
+GridWindow::GridWindow(const Config& config)
+    : compensation_(config.compensation),
+      voxel_size_(config.voxel_size),
+      region_(config.region),
+      extent_(extentOf(config).cast<int>()) {
+  const Region covered = coveredRegion(config);
+  const Eigen::Vector3d low(covered.x_min, covered.y_min, covered.z_min);
+  for (int axis = 0; axis < 3; ++axis) min_index_[axis] = floorToBrick(low[axis] / voxel_size_);
+}
+
+void GridWindow::moveTo(const Eigen::Isometry3d& odom_from_base) {
+  if (compensation_ == Compensation::kResample) {
+    odom_from_grid_ = odom_from_base;
+    return;
+  }
+  const Region swept = sweptRegion(region_);
+  const Eigen::Vector3d low = odom_from_base.translation() + Eigen::Vector3d(swept.x_min, swept.y_min, swept.z_min);
+  for (int axis = 0; axis < 3; ++axis) min_index_[axis] = floorToBrick(low[axis] / voxel_size_);
+  grid_from_base_ = odom_from_base;
+}
+
+Placement GridWindow::placementOf(const Scan& scan) const {
+  // Only the short way from window corner to echo is left to single precision.
+  Eigen::Isometry3d window_from_base = grid_from_base_;
+  window_from_base.translation() -= min_index_.cast<double>() * voxel_size_;
+  const Eigen::Isometry3d window_from_sensor = window_from_base * scan.base_from_sensor;
+  Placement placement;
+  placement.rotation = (window_from_sensor.linear() / voxel_size_).cast<float>();
+  placement.origin = (window_from_sensor.translation() / voxel_size_).cast<float>();
+  placement.extent = extent_.cast<float>();
+  placement.mounting = scan.base_from_sensor.linear().cast<float>();
+  placement.mounted_at = scan.base_from_sensor.translation().cast<float>();
+  placement.region_low = Eigen::Vector3d(region_.x_min, region_.y_min, region_.z_min).cast<float>();
+  placement.region_high = Eigen::Vector3d(region_.x_max, region_.y_max, region_.z_max).cast<float>();
+  return placement;
+}
+
+void GridWindow::enter(const Scan& scan, GridScan& result) const {
+  const Placement placement = placementOf(scan);
+  result.origin = placement.origin;
+  resizeTo(result.echoes, scan.echoes.size());
+  resizeTo(result.inside, scan.echoes.size());
+  const auto keep = [&](std::size_t first, const EchoBlock& block) {
+    for (int i = 0; i < block.count; ++i) {
+      result.echoes[first + static_cast<std::size_t>(i)] = {block.x[i], block.y[i], block.z[i]};
+      result.inside[first + static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(block.inside[i]);
+    }
+  };
+  forEachBlock(placement, scan.echoes, 0, blocksOf(scan.echoes.size()), keep);
+}
+
+GridOutline GridWindow::outline() const {
+  const Eigen::Vector3d low = min_index_.cast<double>() * voxel_size_;
+  return {odom_from_grid_, low, low + extent_.cast<double>() * voxel_size_};
+}
+
+void placePoints(const GridWindow& window, const GridScan& scan, std::vector<Eigen::Vector3f>& points,
+                 std::vector<std::uint8_t>& is_echo) {
+  const auto size = static_cast<float>(window.voxelSize());
+  resizeTo(points, scan.echoes.size());
+  resizeTo(is_echo, scan.echoes.size());
+  for (std::size_t i = 0; i < scan.echoes.size(); ++i) {
+    points[i] = scan.echoes[i] * size;
+    is_echo[i] = std::isnan(scan.echoes[i].x()) ? 0 : 1;
+  }
+}
+
+bool isBefore(const Index3& a, const Index3& b) {
+  return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+}
+
+std::vector<Eigen::Vector3f> cellCenters(const GridWindow& window, const GridScan& scan,
+                                         const std::vector<std::uint8_t>& marked) {
+  std::vector<Index3> voxels;
+  for (std::size_t i = 0; i < marked.size(); ++i) {
+    if (marked[i] != 0 && scan.inside[i] != 0) voxels.push_back(voxelOf(scan.echoes[i]));
+  }
+  return cellCenters(window, std::move(voxels));
+}
+
+std::vector<Eigen::Vector3f> cellCenters(const GridWindow& window, std::vector<Index3> voxels) {
+  std::sort(voxels.begin(), voxels.end(), isBefore);
+  voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
+  std::vector<Eigen::Vector3f> centers;
+  centers.reserve(voxels.size());
+  for (const Index3& voxel : voxels) {
+    centers.emplace_back((window.odomFromGrid() * window.indexToCenter(voxel)).cast<float>());
+  }
+  return centers;
+}
+
+}  // namespace donex

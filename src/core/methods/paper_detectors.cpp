@@ -1,0 +1,125 @@
+#include <algorithm>
+
+#include "core/grid/grid_2d.h"
+#include "core/grid/grid_3d.h"
+#include "core/methods/detectors.h"
+#include "core/methods/stream_guard.h"
+#include "core/methods/z_buffer_grid.h"
+
+namespace donex {
+namespace {
+
+/// Voxels of the window that the scan hits, in order.
+std::vector<Index3> hitVoxels(const GridWindow& window, const Scan& scan) {
+  GridScan in_grid;
+  window.enter(scan, in_grid);
+  std::vector<Index3> voxels;
+  for (std::size_t i = 0; i < in_grid.echoes.size(); ++i) {
+    if (in_grid.inside[i] != 0) voxels.push_back(voxelOf(in_grid.echoes[i]));
+  }
+  std::sort(voxels.begin(), voxels.end(), isBefore);
+  return voxels;
+}
+
+std::vector<Index3> rememberedBy(const Grid2d&) { return {}; }
+std::vector<Index3> rememberedBy(const Grid3d& grid) { return grid.remembered(); }
+
+/// What both grids share: the stream's order, and that nothing is new in the first scan.
+template <class Grid>
+class PaperDetector : public Detector {
+ public:
+  explicit PaperDetector(const Config& config) : grid_(config) {}
+
+  void process(const Scan& scan, EchoLabels& labels) override {
+    guard_.admit(scan);
+    grid_.shift(scan.odom_from_base);
+    if (watched_) before_ = rememberedBy(grid_);
+    grid_.take(scan, labels);
+    if (watched_) hit_ = hitVoxels(grid_.window(), scan);
+    if (is_first_) std::fill(labels.dynamic.begin(), labels.dynamic.end(), 0);
+    judged_ = labels;
+    if (is_first_) labels.assign(scan.echoes.size());  // nothing is known yet, so nothing is new
+    knows_ = !is_first_;
+    is_first_ = false;
+  }
+
+  void reset() override {
+    grid_.reset();
+    guard_.reset();
+    judged_.resize(0);
+    before_.clear();
+    is_first_ = true;
+    knows_ = false;
+  }
+
+  const std::vector<Object>& objects() const override { return no_objects_; }
+
+  std::vector<Eigen::Vector3f> dynamicCells() const override {
+    return cellCenters(grid_.window(), knows_ ? grid_.newVoxels() : std::vector<Index3>());
+  }
+
+  std::vector<EchoReason> reasons() const override {
+    std::vector<EchoReason> reasons(judged_.dynamic.size(), EchoReason::kOutside);
+    for (std::size_t i = 0; i < reasons.size(); ++i) {
+      if (judged_.observed[i] != 0) reasons[i] = judged_.dynamic[i] != 0 ? EchoReason::kMoving : EchoReason::kSettled;
+    }
+    for (const std::uint32_t echo : grid_.noEchoes()) {
+      if (echo < reasons.size()) reasons[echo] = EchoReason::kNoEcho;
+    }
+    return reasons;
+  }
+
+  MemoryCells memoryCells() const override {
+    MemoryCells cells;
+    const GridWindow& window = grid_.window();
+    std::vector<Index3> remembered = rememberedBy(grid_);
+    std::sort(remembered.begin(), remembered.end(), isBefore);
+    // Before the scan there were all of these: what was not forgotten was hit, or is in the shadow.
+    for (const Index3& voxel : before_) {
+      const Eigen::Vector3f center = (window.odomFromGrid() * window.indexToCenter(voxel)).cast<float>();
+      const bool stays = std::binary_search(remembered.begin(), remembered.end(), voxel, isBefore);
+      const bool is_hit = std::binary_search(hit_.begin(), hit_.end(), voxel, isBefore);
+      if (!stays) {
+        cells.seen_through.push_back(center);
+      } else if (!is_hit) {
+        cells.shadowed.push_back(center);
+      }
+    }
+    return cells;
+  }
+
+  void watch(bool watched) override {
+    watched_ = watched;
+    before_.clear();
+  }
+
+  GridOutline outline() const override { return grid_.window().outline(); }
+
+  std::size_t memoryBytes() const override {
+    return grid_.memoryBytes() + judged_.dynamic.capacity() + judged_.observed.capacity();
+  }
+
+ private:
+  Grid grid_;
+  StreamGuard guard_;
+  EchoLabels judged_;
+  std::vector<Object> no_objects_;
+  bool is_first_ = true;
+  bool knows_ = false;  ///< the last scan was judged against one before it
+  bool watched_ = false;
+  std::vector<Index3> before_, hit_;  ///< of the last scan, in its window; only while watched
+};
+
+}  // namespace
+
+std::unique_ptr<Detector> makePaperDetector3d(const Config& config) {
+  return std::make_unique<PaperDetector<Grid3d>>(config);
+}
+std::unique_ptr<Detector> makeZBufferDetector(const Config& config) {
+  return std::make_unique<PaperDetector<ZBufferGrid>>(config);
+}
+std::unique_ptr<Detector> makePaperDetector2d(const Config& config) {
+  return std::make_unique<PaperDetector<Grid2d>>(config);
+}
+
+}  // namespace donex

@@ -1,0 +1,78 @@
+// Connected echoes (algorithm section 5, step 6).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/evidence/judged_scan.h"
+
+namespace donex {
+
+/// Groups echoes whose cells touch. Cells are cubes over x, y and the height above ground; echoes a
+/// beam apart touch at any range, since the reach grows with the distance from the sensor.
+class Clusters {
+ public:
+  struct Settings {
+    double cell = 0.3;           ///< edge of a cell [m]
+    double height = 4.5;         ///< echoes higher above ground belong to no cluster [m]
+    double across_angle = 0.01;  ///< echoes within this angle touch, horizontally: more than a sensor's step [rad]
+    double up_angle = 0.015;     ///< the same vertically [rad]
+  };
+
+  /// A square of `reach` [m] around the sensor.
+  Clusters(double reach, const Settings& settings);
+
+  /// `echoes` [m] in a frame whose z points up, `heights` above ground [m], one an echo.
+  void connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
+               const std::vector<float>& heights, const std::vector<Standing>& standing);
+
+  static constexpr int kNone = -1;
+  /// Cluster of an echo, 0 to count() - 1, or kNone.
+  int of(std::size_t echo) const { return of_[echo]; }
+  int count() const { return static_cast<int>(echoes_in_.size()); }
+  std::size_t echoesIn(int cluster) const { return echoes_in_[static_cast<std::size_t>(cluster)]; }
+
+  std::size_t memoryBytes() const;
+  /// What memoryBytes will be, for scans of so many echoes of which `connected` take part [bytes], about: scenes differ
+  /// in how many cells echoes share.
+  static double bytesFor(double reach, const Settings& settings, double echoes, double connected);
+
+ private:
+  struct Cell {
+    int x, y, z;
+    int parent;  ///< union-find over cells
+  };
+
+  /// Number of the cell, or kNone. Columns are dense, their cells are held only where there is one.
+  int cellAt(int x, int y, int z) const {
+    const int column = column_at_[columnOf(x, y)];
+    return column == kNone ? kNone : cell_in_column_[placeOf(column, z)];
+  }
+  std::size_t columnOf(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+  }
+  std::size_t placeOf(int column, int z) const {
+    return static_cast<std::size_t>(column) * static_cast<std::size_t>(layers_) + static_cast<std::size_t>(z);
+  }
+  static int widthOf(double reach, double cell);
+  int& makeCell(int x, int y, int z);
+  int rootOf(int cell);
+  void fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
+            const std::vector<float>& heights, const std::vector<Standing>& standing);
+  void hangSkirt();
+  void join(int cell);
+  void number();
+
+  Settings settings_;
+  int width_, layers_;
+  std::vector<int> column_at_;       ///< by x, y: number of the column, or kNone
+  std::vector<int> cell_in_column_;  ///< by column, z: number of the cell, or kNone
+  std::vector<Cell> cells_;
+  std::vector<int> of_;
+  std::vector<std::array<int, 3>> skirt_;  ///< echo, x, y
+  std::vector<int> number_of_root_;
+  std::vector<std::size_t> echoes_in_;  ///< by cluster
+};
+
+}  // namespace donex

@@ -1,0 +1,95 @@
+#include "core/objects/motion_evidence.h"
+
+#include <array>
+#include <limits>
+
+namespace donex {
+namespace {
+
+constexpr std::size_t kPresentPoints = 4 * TraceHistory::kPoints;
+constexpr std::size_t kLeastPoints = 5;
+constexpr double kStillShare = 0.4;  // of the trace may lie near a surface
+constexpr double kFit = 0.25;        // [m] between a point and its counterpart
+constexpr double kFitShare = 0.6;    // of the trace must have one
+constexpr int kFitRounds = 3;
+// What many echoes describe is placed better: smaller shifts count.
+constexpr std::size_t kManyEchoes = 200;
+struct Step {
+  double shift;  ///< [m] that the object must have moved
+  float margin;  ///< [m] that its former place must be clear by
+};
+constexpr Step kStep = {0.4, 0.25F}, kStepOfMany = {0.3, 0.2F};
+
+/// Some echoes of a candidate.
+struct Points {
+  std::array<Eigen::Vector3d, kPresentPoints> in_odom;
+  std::size_t count = 0;
+};
+
+Eigen::Vector3d offsetToNearest(const Eigen::Vector3d& point, const Points& others) {
+  Eigen::Vector3d nearest = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < others.count; ++i) {
+    const Eigen::Vector3d offset = others.in_odom[i] - point;
+    const double squared = offset.squaredNorm();
+    if (squared < least) least = squared, nearest = offset;
+  }
+  return nearest;
+}
+
+}  // namespace
+
+MotionEvidence::MotionEvidence(const JudgedScan& scan, const SightHistory& history)
+    : scan_(scan), history_(history), points_from_odom_(scan.odom_from_points.inverse()) {}
+
+Former MotionEvidence::lookBack(const Trace& trace) const {
+  Former former;
+  for (const Eigen::Vector3d& point : trace) {
+    const SightImage::Sight sight = history_.askNewest((points_from_odom_ * point).cast<float>());
+    former.left += sight == SightImage::Sight::kFree ? 1 : 0;
+    former.still += sight == SightImage::Sight::kSurface ? 1 : 0;
+  }
+  return former;
+}
+
+bool MotionEvidence::hasMoved(const Trace& trace, const Candidate& candidate) const {
+  const Step& step = candidate.echoes.size() >= kManyEchoes ? kStepOfMany : kStep;
+  const double shift = (candidate.center() - trace.center).head<2>().norm();
+  const bool worth_asking = !isMostlySettled(candidate) && trace.size() >= kLeastPoints && shift >= step.shift;
+  return worth_asking && hasLeft(trace, step.margin) && fitsElsewhere(trace, candidate, step.shift);
+}
+
+bool MotionEvidence::hasLeft(const Trace& trace, float margin) const {
+  int left = 0, still = 0, near_surface = 0;
+  for (const Eigen::Vector3d& in_odom : trace) {
+    const Eigen::Vector3f point = (points_from_odom_ * in_odom).cast<float>();
+    const SightImage::Sight through = history_.askThroughGaps(point, margin);
+    left += through == SightImage::Sight::kFree ? 1 : 0;
+    still += through == SightImage::Sight::kSurface ? 1 : 0;
+    near_surface += history_.askNewest(point, margin) == SightImage::Sight::kSurface ? 1 : 0;
+  }
+  return left >= kLeastLeft && left > still && near_surface <= kStillShare * static_cast<double>(trace.size());
+}
+
+bool MotionEvidence::fitsElsewhere(const Trace& trace, const Candidate& candidate, double least_shift) const {
+  Points present;
+  visitSome(scan_, candidate, kPresentPoints,
+            [&](const Eigen::Vector3d& point) { present.in_odom[present.count++] = point; });
+  // From centre to centre, which another view of the same thing displaces, to the best fit.
+  Eigen::Vector3d shift = candidate.center() - trace.center;
+  int fitting = 0;
+  for (int round = 1; round <= kFitRounds; ++round) {
+    const double reach = round < kFitRounds ? 2.0 * kFit : kFit;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    fitting = 0;
+    for (const Eigen::Vector3d& point : trace) {
+      const Eigen::Vector3d offset = offsetToNearest(point + shift, present);
+      if (offset.norm() < reach) sum += offset, ++fitting;
+    }
+    if (fitting == 0) return false;
+    if (round < kFitRounds) shift += sum / fitting;
+  }
+  return shift.head<2>().norm() >= least_shift && fitting >= kFitShare * static_cast<double>(trace.size());
+}
+
+}  // namespace donex

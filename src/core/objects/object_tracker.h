@@ -1,0 +1,77 @@
+// Connected echoes followed over time: is this thing moving? (algorithm section 5, step 6)
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "core/objects/motion_evidence.h"
+#include "donex/object.h"
+
+namespace donex {
+
+/// Follows candidates from scan to scan. An object moves
+///  - where enough of its echoes are new: its front comes into space that was free.
+/// With ObjectConfig::motion also
+///  - where its former place is now seen free: its rear has receded. This finds a vehicle ahead at the
+///    ego vehicle's own speed, whose front nobody sees and whose rear only ever enters its own shadow;
+///  - where a little of both is true: the ends of a long vehicle that passes by;
+///  - where its former shape fits it at another place, and is gone from the old one.
+class ObjectTracker {
+ public:
+  explicit ObjectTracker(const ObjectConfig& config);
+
+  /// Decides `dynamic` of every candidate of a scan. `history` is asked in the scan's points; its newest
+  /// scan is this one.
+  void update(const JudgedScan& scan, const SightHistory& history, Candidates& candidates);
+
+  /// Where the moving objects should be at `stamp` [s]. Valid until the next call.
+  const std::vector<Expected>& expect(double stamp) { return expect(stamp, &Track::extent); }
+
+  /// Objects of the last scan that move, or moved since they are followed.
+  const std::vector<Object>& objects() const { return objects_; }
+
+  void reset();
+  std::size_t memoryBytes() const;
+
+ private:
+  static constexpr double kNever = -std::numeric_limits<double>::infinity();
+
+  struct Track {
+    std::uint32_t id = 0;
+    Eigen::Vector3d center, extent, velocity = Eigen::Vector3d::Zero();
+    Eigen::Vector3d full_extent;  ///< as seen when less of it was hidden
+    double first_seen = 0.0, last_seen = 0.0;
+    double last_motion = kNever, last_moved_whole = kNever;
+    int receding_scans = 0, advancing_scans = 0, moving_scans = 0;  ///< in a row
+    bool dynamic = false, ever_dynamic = false;
+    bool is_found = false;   ///< in the present scan
+    TraceHistory::Id trace;  ///< its last one
+
+    Eigen::Vector3d centerAt(double stamp) const { return center + velocity * (stamp - last_seen); }
+  };
+  struct Pair {
+    double distance;
+    std::size_t track, candidate;
+  };
+
+  void match(double stamp, const Candidates& candidates);
+  Track& trackOf(std::size_t candidate_index, double stamp, const Candidate& candidate);
+  static void follow(Track& track, double stamp, const Candidate& candidate);
+  void weigh(Track& track, const MotionEvidence& evidence, double stamp, const Candidate& candidate) const;
+  void decide(Track& track, double stamp, Candidate& candidate) const;
+  const std::vector<Expected>& expect(double stamp, Eigen::Vector3d Track::*extent);
+  void complete(Candidates& candidates) const;
+  void describe(const Track& track, const JudgedScan& scan, const Candidate& candidate);
+
+  ObjectConfig config_;
+  Eigen::Vector3d sensor_ = Eigen::Vector3d::Zero();  ///< of the present scan, odometry frame [m]
+  TraceHistory traces_;
+  std::vector<Track> tracks_;
+  std::vector<Expected> expected_;
+  std::vector<Pair> pairs_;
+  std::vector<int> track_of_;  ///< by candidate, -1 where it is followed for the first time
+  std::vector<Object> objects_;
+  std::uint32_t next_id_ = 1;
+};
+
+}  // namespace donex

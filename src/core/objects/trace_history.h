@@ -1,0 +1,82 @@
+// Where the things of the last scans were.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/objects/candidate.h"
+
+namespace donex {
+
+/// Where some of a thing's echoes were, odometry frame [m]; a view of the history.
+struct Trace {
+  double stamp = 0.0;                                ///< [s]
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< of the thing
+  const Eigen::Vector3d* first = nullptr;
+  std::size_t points = 0;
+
+  std::size_t size() const { return points; }
+  const Eigen::Vector3d* begin() const { return first; }
+  const Eigen::Vector3d* end() const { return first + points; }
+};
+
+/// Calls visit(echo in the odometry frame [m]) for `at_most` of the candidate's echoes, spread over all of them.
+template <class Visit>
+void visitSome(const JudgedScan& scan, const Candidate& candidate, std::size_t at_most, Visit&& visit) {
+  const std::size_t stride = candidate.echoes.size() / at_most + 1;
+  for (std::size_t i = 0; i < candidate.echoes.size(); i += stride) {
+    visit(Eigen::Vector3d(scan.odom_from_points * scan.points[candidate.echoes[i]].cast<double>()));
+  }
+}
+
+/// A thing leaves one trace a scan, chained to the one before. A scan's traces lie together and are forgotten together.
+class TraceHistory {
+ public:
+  /// Echoes of a thing that are kept, at most.
+  static constexpr std::size_t kPoints = 48;
+
+  struct Id {
+    std::uint32_t sheet = 0;  ///< number of the scan, from 1; 0: no trace
+    std::uint32_t entry = 0;
+  };
+
+  /// Traces are asked for up to `look_back` [s] before the present scan, of things that leave one every `longest_gap`
+  /// [s] or every scan.
+  TraceHistory(double look_back, double longest_gap) : look_back_(look_back), longest_gap_(longest_gap) {}
+
+  /// The next scan [s]: forgets what will not be asked for any more. Stamps grow.
+  void begin(double stamp);
+
+  /// The candidate's trace in the present scan; `before`: the same thing's last one.
+  Id leave(const JudgedScan& scan, const Candidate& candidate, Id before);
+
+  /// True where the thing whose last trace is `latest` left one at `stamp` [s] or earlier; the last of these. Valid
+  /// until the next call of another kind.
+  bool find(Id latest, double stamp, Trace& trace) const;
+
+  void reset();
+  std::size_t memoryBytes() const;
+
+ private:
+  struct Entry {
+    Eigen::Vector3d center;
+    std::uint32_t first, points;
+    Id before;
+  };
+  struct Sheet {
+    double stamp = 0.0;
+    std::vector<Entry> entries;
+    std::vector<Eigen::Vector3d> points;
+  };
+
+  void forget(double until);
+
+  double look_back_, longest_gap_;  ///< [s]
+  std::uint32_t oldest_ = 1;        ///< number of the first sheet
+  std::vector<Sheet> sheets_;       ///< oldest first
+  std::vector<Sheet> spares_;       ///< storage for the next ones
+};
+
+}  // namespace donex

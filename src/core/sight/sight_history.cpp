@@ -1,0 +1,72 @@
+#include "core/sight/sight_history.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace donex {
+
+void SightHistory::add(const Scan& scan, const std::vector<std::uint8_t>& is_echo) {
+  const bool too_soon = !kept_.empty() && scan.stamp < kept_.back().stamp + 0.9 * spacing_;
+  if (too_soon) return;
+  forget(scan.stamp - length_);
+  Kept next{scan.stamp, scan.odomFromSensor().inverse(), {}, {}};
+  if (!spares_.empty()) {
+    next.image = std::move(spares_.back());
+    spares_.pop_back();
+  }
+  if (!kept_.empty()) kept_.back().image.handOn(next.image);
+  next.image.build(scan.echoes, is_echo, reading_);
+  kept_.push_back(std::move(next));
+}
+
+void SightHistory::forget(double until) {
+  const auto is_kept = [&](const Kept& kept) { return kept.stamp >= until; };
+  const auto first = std::find_if(kept_.begin(), kept_.end(), is_kept);
+  std::for_each(kept_.begin(), first, [&](Kept& kept) { spares_.push_back(std::move(kept.image)); });
+  kept_.erase(kept_.begin(), first);
+}
+
+void SightHistory::reset() { forget(std::numeric_limits<double>::infinity()); }
+
+void SightHistory::askFrom(const Eigen::Isometry3d& odom_from_asked) {
+  for (Kept& kept : kept_) kept.sensor_from_asked = (kept.sensor_from_odom * odom_from_asked).cast<float>();
+}
+
+SightHistory::Evidence SightHistory::ask(const Eigen::Vector3f& point, double since, int enough) const {
+  Evidence evidence;
+  for (auto kept = kept_.rbegin(); kept != kept_.rend() && kept->stamp > since; ++kept) {
+    switch (kept->image.at(kept->sensor_from_asked * point, margin_)) {
+      case SightImage::Sight::kFree: ++evidence.free; break;
+      case SightImage::Sight::kSurface: ++evidence.surface; break;
+      case SightImage::Sight::kHidden: ++evidence.hidden; break;
+      case SightImage::Sight::kUnknown: break;
+    }
+    if (evidence.free >= enough) break;
+  }
+  return evidence;
+}
+
+SightImage::Sight SightHistory::askNewest(const Eigen::Vector3f& point, float margin) const {
+  if (kept_.empty()) return SightImage::Sight::kUnknown;
+  return kept_.back().image.at(kept_.back().sensor_from_asked * point, margin);
+}
+
+SightImage::Sight SightHistory::askThroughGaps(const Eigen::Vector3f& point, float margin) const {
+  if (kept_.empty()) return SightImage::Sight::kUnknown;
+  return kept_.back().image.throughGaps(kept_.back().sensor_from_asked * point, margin);
+}
+
+double SightHistory::bytesFor(double length, double spacing, double echoes) {
+  const double images = length / spacing + 2.0;  // both ends count, and one more is on its way out
+  return images * SightImage::answerBytes() + SightImage::workspaceBytes(echoes);
+}
+
+std::size_t SightHistory::memoryBytes() const {
+  std::size_t bytes = kept_.capacity() * sizeof(Kept);
+  for (const Kept& kept : kept_) bytes += kept.image.memoryBytes();
+  for (const SightImage& spare : spares_) bytes += spare.memoryBytes();
+  return bytes;
+}
+
+}  // namespace donex

@@ -1,0 +1,44 @@
+// A method, live or not, over a sequence: the scans in their order, as often as the method asks for.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "donex/whole_drive.h"
+#include "io/sequence.h"
+
+namespace donex {
+
+class DriveRun {
+ public:
+  /// Throws std::invalid_argument with every fault of the configuration.
+  explicit DriveRun(const Config& config);
+
+  /// Takes the labels of a scan; `index` is the sequence's.
+  using Sink = std::function<void(std::size_t index, const Scan& scan, const EchoLabels& labels)>;
+
+  /// Shows the first `scans` scans; `progress` is called scans * passes() times. Throws DataError from the reader.
+  void run(const SequenceReader& sequence, std::size_t scans, const Sink& sink, const std::function<void()>& progress);
+
+  std::size_t passes() const { return whole_ == nullptr ? 1U : static_cast<std::size_t>(whole_->passes()); }
+
+  /// Wall clock and CPU time of all threads that judging took, a scan, all passes together [s].
+  const std::vector<double>& times() const { return times_; }
+  const std::vector<double>& cpuTimes() const { return cpu_times_; }
+
+  /// Bytes held by the method's own memory after the last scan.
+  std::size_t memoryBytes() const { return detector().memoryBytes(); }
+
+ private:
+  Detector& detector() { return whole_ == nullptr ? *live_ : *whole_; }
+  const Detector& detector() const { return whole_ == nullptr ? *live_ : *whole_; }
+  void judge(const Scan& scan, std::size_t index);
+
+  std::unique_ptr<Detector> live_;
+  std::unique_ptr<WholeDriveDetector> whole_;
+  EchoLabels labels_;
+  std::vector<double> times_, cpu_times_;
+};
+
+}  // namespace donex

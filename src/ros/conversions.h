@@ -1,0 +1,50 @@
+// PointCloud2 -> the core's echoes, and labels -> PointCloud2. `layout` is always judgeLayout's of the same cloud.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <sensor_msgs/PointCloud2.h>
+
+#include "donex/scan.h"
+#include "ros/cloud_layout.h"
+
+namespace donex {
+
+/// The echoes in the order of the cloud, row by row, in the cloud's frame [m]. Overwrites `echoes`. A point at
+/// exactly 0, 0, 0 is how drivers of organised clouds say that nothing came back: it becomes NaN.
+void parseEchoes(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout,
+                 std::vector<Eigen::Vector3f>& echoes);
+
+/// Each echo's own time.
+struct EchoTimes {
+  std::vector<float> after_stamp;  ///< after the cloud's stamp [s], one an echo; negative before it
+  double first = 0.0, last = 0.0;  ///< the span of the times of echoes with finite coordinates [s]
+  std::string problem;             ///< why the cloud's times cannot be used; empty where they can, or where it has none
+
+  bool empty() const { return after_stamp.empty(); }
+  /// Keeps its memory.
+  void clear();
+};
+
+/// A scan takes less than this; times further from the stamp belong to another clock [s].
+constexpr double kMaxScanDuration = 1.0;
+
+/// Echoes and their times in one pass, into memory that is kept from scan to scan. No times where the cloud has none,
+/// or where they cannot be times of this scan (another clock than the stamp's, not finite).
+void parseEchoes(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout, std::vector<Eigen::Vector3f>& echoes,
+                 EchoTimes& times);
+
+/// The input with the fields `dynamic` and `observed`: same header, same order, every byte of every point kept.
+sensor_msgs::PointCloud2Ptr labelCloud(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout,
+                                       const EchoLabels& labels);
+
+enum class CloudPart { kDynamic, kStatic };
+
+/// One of the two parts into which the labels divide the input, not organised; the input's own fields.
+/// Non-finite echoes are in the static part.
+sensor_msgs::PointCloud2Ptr selectPart(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout,
+                                       const EchoLabels& labels, CloudPart part);
+
+}  // namespace donex

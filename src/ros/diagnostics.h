@@ -1,0 +1,66 @@
+// One status an engineer understands on /diagnostics, driven by a wall clock so that silence shows, too.
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/node_handle.h>
+
+#include "ros/health.h"
+#include "ros/pipeline.h"
+
+namespace donex {
+
+class Diagnostics {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  Diagnostics(const ros::NodeHandle& nh, const ros::NodeHandle& pnh, const Pipeline& pipeline, bool needs_odometry);
+
+  void cloudArrived(const ros::Time& stamp);
+  void odometryArrived(const ros::Time& stamp);
+  void scanPublished(const LabeledScan& scan);
+  void dropped(DropReason reason, const std::string& text);
+  void strangeTimes(const std::string& text) { last_strange_times_ = text; }
+  void refused(const std::string& text) { last_refusal_ = text; }
+  void failed(const std::string& text) {
+    ++failures_;
+    last_failure_ = text;
+  }
+
+  /// Publishes; called about once a second.
+  void publish() { updater_.force_update(); }
+
+ private:
+  struct Figures {
+    Clock::time_point published;
+    double processing, latency;  // [s]
+  };
+  using Times = std::deque<Clock::time_point>;
+
+  double publishedRate() const;     // [Hz]
+  double medianProcessing() const;  // [s]
+  Health health() const;
+
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void addLine(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+  void addFigures(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+  void addCounts(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+
+  const Pipeline& pipeline_;
+  diagnostic_updater::Updater updater_;
+  bool needs_odometry_;
+  Times arrivals_, odometry_arrivals_, drops_;  // of the last seconds
+  std::deque<Figures> published_;               // of the last seconds
+  std::optional<Clock::time_point> last_cloud_, last_odometry_;
+  ros::Time newest_cloud_, newest_odometry_;  // stamps
+  std::size_t failures_ = 0, failures_reported_ = 0;
+  DropReason last_reason_ = DropReason::kInternalError;
+  std::string last_drop_, last_refusal_, last_failure_, last_strange_times_;
+};
+
+}  // namespace donex

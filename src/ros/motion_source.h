@@ -1,0 +1,87 @@
+// Where vehicle and sensor were during a scan: odometry messages or tf, and the mounting from tf.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+
+#include <nav_msgs/Odometry.h>
+#include <ros/time.h>
+#include <tf2/buffer_core.h>
+
+#include "donex/config.h"
+#include "donex/motion/ego_motion.h"
+#include "ros/drop_reason.h"
+
+namespace donex {
+
+/// What became of an odometry message.
+struct OdometryVerdict {
+  enum class Kind {
+    kUsed,
+    kRefused,      ///< see refusal
+    kTimeRanBack,  ///< not used: much older than the newest
+    kNewTrack,     ///< used, but poses before and after cannot be compared: forget the grid
+  };
+  Kind kind = Kind::kUsed;
+  OdometryRefusal refusal = OdometryRefusal::kNonFinite;
+  std::string text;  ///< of anything but kUsed
+};
+
+/// The moments of a scan that have to be covered.
+struct ScanTimes {
+  ros::Time stamp;
+  double first = 0.0, last = 0.0;  ///< echoes' times after the stamp [s]; both zero without de-skewing
+
+  bool spanTime() const { return last > first; }
+};
+
+/// The motion of one scan.
+struct ScanMotion {
+  Eigen::Isometry3d base_from_sensor = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d odom_from_base = Eigen::Isometry3d::Identity();  ///< at the stamp
+  std::string odom_frame;
+  /// Covers the scan's times, to de-skew by; null where there is nothing to undo. Valid until the source's next call.
+  const EgoMotion* track = nullptr;
+};
+
+/// Why there is no motion (yet).
+struct MotionMissing {
+  DropReason reason;
+  std::string text;
+  bool may_come;  ///< waiting can help
+};
+
+using MotionAnswer = std::variant<ScanMotion, MotionMissing>;
+
+/// Knows no clock and no master: odometry is handed in, `tf` is filled by somebody else.
+class MotionSource {
+ public:
+  /// `tf` must outlive the source; it is not asked with OdometrySource::kNone.
+  MotionSource(const MotionConfig& config, const tf2::BufferCore& tf);
+
+  OdometryVerdict add(const nav_msgs::Odometry& odometry);
+
+  /// The motion of a scan measured in `sensor_frame`. With `settle` the newest odometry may be extrapolated
+  /// as far as configured; without, it has to cover the scan: what comes does not depend on when one asks.
+  MotionAnswer during(const ScanTimes& times, const std::string& sensor_frame, bool settle);
+
+  void reset();
+
+ private:
+  MotionAnswer fromOdometry(const ScanTimes& times, const std::string& sensor_frame, bool settle) const;
+  MotionAnswer fromTf(const ScanTimes& times, const std::string& sensor_frame);
+  std::optional<MotionMissing> trackFromTf(const ScanTimes& times);
+  OdometryVerdict addSample(const nav_msgs::Odometry& odometry, const OdometrySample& sample);
+  std::variant<Eigen::Isometry3d, MotionMissing> lookup(const std::string& target, const std::string& source,
+                                                        const ros::Time& stamp) const;
+  bool adoptFrames(const nav_msgs::Odometry& odometry);
+
+  MotionConfig config_;
+  const tf2::BufferCore& tf_;
+  EgoMotion odometry_;
+  EgoMotion tf_track_;                   // of one scan
+  std::string odom_frame_, base_frame_;  // of the odometry in use; empty before the first
+};
+
+}  // namespace donex

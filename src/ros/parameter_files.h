@@ -1,0 +1,33 @@
+// config/{default,paper_2d,paper_3d}.yaml and cfg/Donex.cfg are written from the code: the one place of names, defaults
+// and ranges.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "donex/config.h"
+
+namespace donex {
+
+/// Level bits of dynamic_reconfigure: what a change of a parameter means.
+enum ReconfigureLevel : std::uint32_t {
+  kRebuildsGrid = 1,  ///< the grid starts anew, empty
+  kSwitch = 2,        ///< outputs only
+};
+
+/// The group in which a parameter is shown; `value` is a member of `config`.
+std::string groupOf(const Config& config, const void* value);
+
+/// What a change of the parameter means; `value` is a member of `config`.
+ReconfigureLevel levelOf(const Config& config, const void* value);
+
+/// Every parameter with its default, unit, range and meaning, as rosparam reads it.
+std::string defaultYaml();
+
+/// The paper's method exactly: every step beyond the paper switched off; the rest is as by default.
+std::string paperYaml(Method method);
+
+/// The reconfigurable parameters as dynamic_reconfigure's generator reads them.
+std::string reconfigureCfg();
+
+}  // namespace donex

@@ -1,0 +1,130 @@
+// From messages to labels: what the node and donex_bag share, so that both give the same labels, echo by echo.
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <nav_msgs/Odometry.h>
+#include <sensor_msgs/PointCloud2.h>
+#include <tf2/buffer_core.h>
+
+#include "donex/detector.h"
+#include "ros/conversions.h"
+#include "ros/drop_reason.h"
+#include "ros/motion_source.h"
+
+namespace donex {
+
+/// A scan that has been judged; the references are valid during the call that hands it out.
+struct LabeledScan {
+  sensor_msgs::PointCloud2ConstPtr cloud;  ///< as it came
+  const CloudLayout& layout;
+  const Scan& scan;
+  const EchoLabels& labels;
+  const Detector& detector;
+  const std::string& odom_frame;
+  std::chrono::steady_clock::time_point received;
+  double processing_time;  ///< parsing, de-skewing and judging [s]
+};
+
+/// What the pipeline tells its owner; every function must be set.
+struct PipelineEvents {
+  std::function<void(const LabeledScan&)> labeled;
+  std::function<void(DropReason, const std::string& text)> dropped;       ///< once a dropped cloud
+  std::function<void(OdometryRefusal, const std::string& text)> refused;  ///< once a refused odometry
+  std::function<void(const std::string& text)> forgotten;                 ///< the grid is empty again, and why
+  std::function<void(const std::string& text)> strange_times;             ///< once a cloud that cannot be de-skewed
+};
+
+struct PipelineCounts {
+  std::size_t clouds_in = 0, clouds_labeled = 0;
+  std::size_t odometry_in = 0;
+  DropCounts dropped;
+  OdometryRefusalCounts refused;
+};
+
+/// Pairs clouds with motion by time, never by order of arrival, and has them judged in the order of their
+/// stamps. Every cloud is labelled or dropped for a reason, exactly once. Knows no clock: `now` [s] is any clock
+/// that runs as the messages arrive (ROS time; the record time in a bag). Not thread-safe.
+class Pipeline {
+ public:
+  /// Throws std::invalid_argument with every fault of the configuration. `tf` must outlive the pipeline.
+  Pipeline(const Config& config, const tf2::BufferCore& tf, PipelineEvents events);
+
+  /// The same with a detector that outlives it: whole drives are shown to one detector several times.
+  Pipeline(const Config& config, const tf2::BufferCore& tf, PipelineEvents events, std::shared_ptr<Detector> detector);
+
+  void addCloud(const sensor_msgs::PointCloud2ConstPtr& cloud, double now);
+  void addOdometry(const nav_msgs::Odometry& odometry);
+
+  /// Labels or drops the oldest waiting cloud when its time has come; false when there was nothing to do.
+  bool step(double now);
+
+  /// Nothing more will come: every waiting cloud is labelled or dropped now.
+  void finish();
+
+  /// Forgets the grid; odometry and waiting clouds stay.
+  void reset();
+
+  /// Takes the new values between two scans; the grid is built anew (empty) when one of its parameters changed.
+  /// Throws std::invalid_argument for a faulty configuration, and then stays as it was. Parameters of the
+  /// motion are fixed at construction.
+  void configure(const Config& config);
+
+  /// Whether somebody wants to see the cells of the coming scans (Detector::memoryCells).
+  void watchCells(bool watched);
+
+  std::size_t waiting() const { return waiting_.size(); }
+  const PipelineCounts& counts() const { return counts_; }
+  const Detector& detector() const { return *detector_; }
+
+ private:
+  struct WaitingCloud {
+    sensor_msgs::PointCloud2ConstPtr cloud;
+    CloudLayout layout;
+    std::size_t number = 0;  // in the order of arrival, from 1 on
+    double arrival = 0.0;
+    std::chrono::steady_clock::time_point received;
+  };
+
+  bool deskews() const;
+  void parse(const WaitingCloud& waiting);
+  void tellStrangeTimes(const WaitingCloud& waiting);
+  void place(WaitingCloud cloud);
+  void suspect(WaitingCloud cloud);
+  void suspect(const nav_msgs::Odometry& odometry);
+  void use(const nav_msgs::Odometry& odometry);
+  void dropSuspect();
+  void startAnew(const std::string& why);
+  MotionAnswer motionOf(const WaitingCloud& waiting, bool settle);
+  void label(const WaitingCloud& waiting, const ScanMotion& motion);
+  void moveToOrigin();
+  void refuse(OdometryRefusal refusal, const std::string& text);
+  void drop(DropReason reason, const std::string& text);
+
+  Config config_;
+  PipelineEvents events_;
+  MotionSource motion_;
+  std::shared_ptr<Detector> detector_;
+  bool watched_ = false;
+  PipelineCounts counts_;
+  std::deque<WaitingCloud> waiting_;  // by stamp
+  std::optional<ros::Time> last_labeled_;
+
+  // One old message is a straggler, two in a row are a clock that ran back: the first is kept until that is known.
+  std::optional<WaitingCloud> suspect_cloud_;
+  std::optional<nav_msgs::Odometry> suspect_odometry_;
+
+  // Of the scan in hand; kept for their memory. A cloud is parsed while it waits for odometry, once.
+  std::size_t parsed_ = 0;     // the number of the cloud that scan_ and times_ hold
+  double parsing_time_ = 0.0;  // [s]
+  Scan scan_;
+  EchoTimes times_;
+  EchoLabels labels_;
+};
+
+}  // namespace donex

@@ -1,0 +1,107 @@
+// Former places: what has left them, and what has moved elsewhere.
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "core/objects/motion_evidence.h"
+#include "support/judged_things.h"
+
+namespace donex {
+namespace {
+
+using testing::JudgedThings;
+
+/// The trace of a thing.
+struct Left {
+  TraceHistory history{1.0, 0.6};
+  TraceHistory::Id last;
+
+  operator Trace() const {
+    Trace trace;
+    EXPECT_TRUE(history.find(last, std::numeric_limits<double>::infinity(), trace));
+    return trace;
+  }
+};
+
+/// A scan, its sight and its first thing as a candidate.
+struct Seen {
+  explicit Seen(const JudgedThings& seen, std::size_t echoes) : things(seen) {
+    history.add(things.scan(), things.judged.is_echo);
+    history.askFrom(things.judged.odom_from_points);
+    for (std::size_t i = 0; i < echoes; ++i) candidate.echoes.push_back(static_cast<std::uint32_t>(i));
+    describeEchoes(things.judged, candidate);
+  }
+
+  Left leave() const {
+    Left left;
+    left.history.begin(things.judged.stamp);
+    left.last = left.history.leave(things.judged, candidate, {});
+    return left;
+  }
+  Former lookBack(const Trace& trace) const { return MotionEvidence(things.judged, history).lookBack(trace); }
+  bool hasMoved(const Trace& trace) const { return MotionEvidence(things.judged, history).hasMoved(trace, candidate); }
+
+  JudgedThings things;
+  SightHistory history{2.0, 0.0, 0.5F, {true, 0.038}};
+  Candidate candidate;
+};
+
+/// Somebody 8 m ahead at y before a wall; the sensor moves along x.
+Seen somebody(double y, Place place = Place::kUnobserved, double sensor_x = 0.0, bool hidden = false) {
+  JudgedThings things(0.0, sensor_x);
+  things.face({8.0, y, 0.4}, {0.0, 0.5, 0.0}, 1.4, place, 0.05);
+  const std::size_t echoes = things.judged.points.size();
+  if (hidden) things.face({5.0, -3.0, 0.0}, {0.0, 2.5, 0.0}, 1.8, Place::kSettled, 0.02);
+  things.face({20.0, -15.0, 0.0}, {0.0, 30.0, 0.0}, 5.0, Place::kSettled, 0.1);
+  return Seen(things, echoes);
+}
+
+TEST(MotionEvidence, ATraceIsSpreadOverTheThing) {
+  const Left left = somebody(-1.0).leave();
+  const Trace trace = left;
+  EXPECT_LE(trace.size(), 48U);
+  EXPECT_GT(trace.size(), 24U);
+  EXPECT_NEAR(trace.center.y(), -0.75, 1e-4);
+  for (const Eigen::Vector3d& point : trace) EXPECT_NEAR(point.x(), 8.0, 1e-4);
+}
+
+TEST(MotionEvidence, WhatStandsIsStillThere) {
+  const Left trace = somebody(-1.0).leave();
+  const Seen now = somebody(-1.0, Place::kUnobserved, 0.5);
+  EXPECT_EQ(now.lookBack(trace).left, 0);
+  EXPECT_GT(now.lookBack(trace).still, 40);
+  EXPECT_FALSE(now.hasMoved(trace));
+}
+
+TEST(MotionEvidence, APlaceIsLeftWhenTheWallBehindItIsSeen) {
+  const Left trace = somebody(-2.0).leave();
+  const Former former = somebody(1.0).lookBack(trace);
+  EXPECT_GT(former.left, 20) << "all of it before the wall";
+  EXPECT_EQ(former.still, 0);
+}
+
+TEST(MotionEvidence, NothingIsKnownOfAPlaceThatIsHiddenNow) {
+  const Left trace = somebody(-2.0).leave();
+  const Seen now = somebody(1.0, Place::kUnobserved, 0.0, true);
+  EXPECT_EQ(now.lookBack(trace).left, 0);
+  EXPECT_FALSE(now.hasMoved(trace));
+}
+
+TEST(MotionEvidence, AShapeFoundElsewhereHasMoved) {
+  const Left trace = somebody(-2.0).leave();
+  EXPECT_TRUE(somebody(-1.2).hasMoved(trace));
+  EXPECT_FALSE(somebody(-1.85).hasMoved(trace)) << "not far enough to tell";
+  EXPECT_FALSE(somebody(-1.2, Place::kSettled).hasMoved(trace)) << "what is settled stood there";
+}
+
+TEST(MotionEvidence, AnotherShapeIsAnotherThing) {
+  const Left trace = somebody(-2.0).leave();
+  JudgedThings things(0.0);
+  things.face({8.0, -0.5, 0.4}, {0.0, 0.1, 0.0}, 0.4, Place::kUnobserved, 0.05);
+  const std::size_t echoes = things.judged.points.size();
+  things.face({20.0, -15.0, 0.0}, {0.0, 30.0, 0.0}, 5.0, Place::kSettled, 0.1);
+  EXPECT_FALSE(Seen(things, echoes).hasMoved(trace));
+}
+
+}  // namespace
+}  // namespace donex

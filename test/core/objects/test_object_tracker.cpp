@@ -1,0 +1,273 @@
+// Things followed over time: which of them move, and who they are.
+#include <algorithm>
+#include <array>
+
+#include <gtest/gtest.h>
+
+#include "core/objects/candidate_finder.h"
+#include "core/objects/object_tracker.h"
+#include "support/judged_things.h"
+
+namespace donex {
+namespace {
+
+using testing::JudgedThings;
+
+const SightImage::Reading kReading{true, 0.038};
+
+/// What the detector does with a judged scan.
+class Followed {
+ public:
+  explicit Followed(const ObjectConfig& config = {}) : finder_(60.0, config), tracker(config) {}
+
+  /// Number of the scan's echoes that move.
+  std::size_t step(const JudgedThings& things) {
+    history_.add(things.scan(), things.judged.is_echo);
+    history_.askFrom(things.judged.odom_from_points);
+    finder_.find(things.judged, tracker.expect(things.judged.stamp), candidates);
+    tracker.update(things.judged, history_, candidates);
+    std::size_t moving = 0;
+    for (const Candidate& candidate : candidates) moving += candidate.dynamic ? candidate.echoes.size() : 0U;
+    return moving;
+  }
+
+ private:
+  SightHistory history_{2.0, 0.0, 0.5F, kReading};
+  CandidateFinder finder_;
+
+ public:
+  ObjectTracker tracker;
+  Candidates candidates;
+};
+
+/// The rear and a side of a vehicle whose rear is at x.
+void addVehicle(JudgedThings& things, double x, double y, Place place) {
+  things.face({x, y, 0.3}, {0.0, 1.8, 0.0}, 1.2, place, 0.05);
+  things.face({x, y, 0.3}, {4.0, 0.0, 0.0}, 1.2, place, 0.05);
+}
+
+TEST(ObjectTracker, SomethingNewIsFollowedUnderOneNumber) {
+  Followed followed;
+  std::uint32_t id = 0;
+  for (int k = 0; k < 20; ++k) {
+    JudgedThings things(0.1 * k);
+    addVehicle(things, 5.0 + 0.8 * k, 2.0, Place::kNew);
+    EXPECT_EQ(followed.step(things), things.judged.points.size());
+    ASSERT_EQ(followed.tracker.objects().size(), 1U);
+    const Object& object = followed.tracker.objects()[0];
+    id = k == 0 ? object.id : id;
+    EXPECT_EQ(object.id, id) << "scan " << k;
+    EXPECT_TRUE(object.dynamic);
+    EXPECT_NEAR(object.age, 0.1 * k, 1e-9);
+    EXPECT_EQ(object.echoes, things.judged.points.size());
+    EXPECT_NEAR(object.odom_from_box.translation().x(), 7.0 + 0.8 * k, 0.4);
+    if (k == 0) continue;  // the direction is not known yet
+    EXPECT_NEAR(object.size.x(), 4.0, 0.1);
+    EXPECT_NEAR(object.velocity.x(), 8.0, 0.1);
+    EXPECT_NEAR(object.velocity.y(), 0.0, 0.1);
+  }
+}
+
+TEST(ObjectTracker, TwoThatPassEachOtherKeepTheirNumbers) {
+  Followed followed;
+  std::array<std::uint32_t, 2> ids{};
+  for (int k = 0; k < 20; ++k) {
+    JudgedThings things(0.1 * k);
+    addVehicle(things, 4.0 + 1.0 * k, 2.0, Place::kNew);
+    addVehicle(things, 24.0 - 1.0 * k, 6.0, Place::kNew);
+    followed.step(things);
+    ASSERT_EQ(followed.tracker.objects().size(), 2U) << "scan " << k;
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (k == 0) ids[i] = followed.tracker.objects()[i].id;
+      EXPECT_EQ(followed.tracker.objects()[i].id, ids[i]) << "scan " << k;
+    }
+  }
+  EXPECT_NE(ids[0], ids[1]);
+}
+
+TEST(ObjectTracker, AVehicleAheadAtTheSameSpeedIsFoundByItsRear) {
+  Followed followed;
+  for (int k = 0; k < 30; ++k) {
+    const double sensor_x = 1.2 * k;
+    JudgedThings things(0.1 * k, sensor_x);
+    // Only ever in its own shadow: nothing of it is new.
+    things.face({sensor_x + 12.0, -0.9, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kUnobserved, 0.05);
+    const std::size_t moving = followed.step(things);
+    const bool found_when_it_must = k < 6 || moving == things.judged.points.size();
+    const bool not_before_it_can = k > 3 || moving == 0;
+    EXPECT_TRUE(found_when_it_must && not_before_it_can) << "scan " << k << ": " << moving;
+  }
+  ASSERT_EQ(followed.tracker.objects().size(), 1U);
+  EXPECT_NEAR(followed.tracker.objects()[0].velocity.x(), 12.0, 0.2);
+}
+
+TEST(ObjectTracker, WithoutMotionOnlyNewEchoesTell) {
+  ObjectConfig config;
+  config.motion = false;
+  for (const Place place : {Place::kUnobserved, Place::kNew}) {
+    Followed followed(config);
+    for (int k = 0; k < 30; ++k) {
+      JudgedThings things(0.1 * k, 1.2 * k);
+      things.face({1.2 * k + 12.0, -0.9, 0.3}, {0.0, 1.8, 0.0}, 1.2, place, 0.05);
+      EXPECT_EQ(followed.step(things), place == Place::kNew ? things.judged.points.size() : 0U) << "scan " << k;
+    }
+  }
+}
+
+TEST(ObjectTracker, AFewNewEchoesAndAPlaceThatIsLeftAreEnough) {
+  // The ends of a long vehicle that passes by: little is new, the former end is seen free.
+  Followed followed;
+  std::size_t moving = 0;
+  for (int k = 0; k < 20; ++k) {
+    JudgedThings things(0.1 * k);
+    const double x = -10.0 + 0.8 * k;
+    things.face({x, 6.0, 0.3}, {12.0, 0.0, 0.0}, 1.2, Place::kUnobserved);
+    things.face({-30.0, 20.0, 0.3}, {60.0, 0.0, 0.0}, 6.0, Place::kUnobserved, 0.15);  // a house behind
+    for (int i = 0; i < 6; ++i) things.echo({x + 12.1, 6.0, 0.3 + 0.1 * i}, Place::kNew);
+    moving = followed.step(things);
+  }
+  EXPECT_EQ(moving, 121U * 13U + 6U);
+}
+
+TEST(ObjectTracker, WhatStandsNeverMovesHoweverTheSensorPassesIt) {
+  for (const Place place : {Place::kUnobserved, Place::kSettled}) {
+    Followed followed;
+    for (int k = 0; k < 40; ++k) {
+      JudgedThings things(0.1 * k, 1.0 * k);
+      addVehicle(things, 20.0, 3.0, place);
+      things.face({30.0, -6.0, 0.3}, {0.0, 2.0, 0.0}, 1.5, place);
+      things.face({-20.0, 12.0, 0.0}, {100.0, 0.0, 0.0}, 6.0, place, 0.2);
+      EXPECT_EQ(followed.step(things), 0U) << "scan " << k;
+      EXPECT_TRUE(followed.tracker.objects().empty());
+    }
+  }
+}
+
+TEST(ObjectTracker, WhatStopsStaysDynamicForTheStopTime) {
+  for (const double stop_time : {0.0, 0.45, 1.05}) {
+    ObjectConfig config;
+    config.stop_time = stop_time;
+    Followed followed(config);
+    for (int k = 0; k < 25; ++k) {
+      JudgedThings things(0.1 * k);
+      addVehicle(things, 8.0, 2.0, k < 10 ? Place::kNew : Place::kUnobserved);
+      const bool expected = 0.1 * (k - 9) <= stop_time;
+      EXPECT_EQ(followed.step(things) > 0, expected) << "scan " << k << " stop_time " << stop_time;
+      ASSERT_EQ(followed.tracker.objects().size(), 1U) << "it has moved since it is followed";
+      EXPECT_EQ(followed.tracker.objects()[0].dynamic, expected);
+    }
+  }
+}
+
+TEST(ObjectTracker, AParkedCarThatDrivesOffIsFoundBeforeItIsFast) {
+  Followed followed;
+  for (int k = 0; k < 45; ++k) {
+    JudgedThings things(0.1 * k);
+    const double driving = std::max(0.0, 0.1 * (k - 20)), way = 0.5 * 1.75 * driving * driving;
+    addVehicle(things, 8.0 + way, 2.0, way < 0.2 ? Place::kSettled : Place::kUnobserved);
+    const std::size_t car = things.judged.points.size();
+    things.face({-10.0, 12.0, 0.0}, {60.0, 0.0, 0.0}, 6.0, Place::kSettled, 0.2);
+    const std::size_t moving = followed.step(things);
+    EXPECT_TRUE(moving == 0 || moving == car) << "scan " << k << ": " << moving;
+    EXPECT_EQ(moving, driving > 1.5 ? car : driving < 0.3 ? 0U : moving) << "driving for " << driving << " s";
+  }
+}
+
+TEST(ObjectTracker, WhatSettlesStandsAtOnce) {
+  Followed followed;
+  for (int k = 0; k < 14; ++k) {
+    JudgedThings things(0.1 * k);
+    addVehicle(things, 8.0, 2.0, k < 10 ? Place::kNew : Place::kSettled);
+    EXPECT_EQ(followed.step(things) > 0, k < 10) << "scan " << k;
+  }
+}
+
+TEST(ObjectTracker, WhatASlowThingLeavesBehindAFenceTells) {
+  // Careful sight knows nothing behind a fence; the thing's own shape, found elsewhere, tells.
+  Followed followed;
+  std::size_t moving = 0, person = 0;
+  for (int k = 0; k < 20; ++k) {
+    JudgedThings things(0.1 * k);
+    const double y = -3.0 + 0.12 * k;
+    things.face({9.0, y, 0.4}, {0.0, 0.5, 0.0}, 1.4, Place::kUnobserved, 0.05);
+    person = things.judged.points.size();
+    for (int picket = 0; picket < 40; ++picket) {
+      things.face({6.0, -4.0 + 0.2 * picket, 0.0}, {0.0, 0.02, 0.0}, 1.1, Place::kSettled, 0.02);
+    }
+    things.face({25.0, -15.0, 0.0}, {0.0, 30.0, 0.0}, 5.0, Place::kSettled);
+    moving = followed.step(things);
+  }
+  EXPECT_EQ(moving, person);
+}
+
+TEST(ObjectTracker, FragmentsOfAVehicleBehindAPoleMoveWithIt) {
+  Followed followed;
+  for (int k = 0; k < 15; ++k) {
+    JudgedThings things(0.1 * k);
+    const double x = 12.0 + 0.6 * k;
+    things.face({x, -0.9, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kUnobserved, 0.05);
+    const bool is_hidden_in_part = k == 14;
+    things.face({x, -0.9, 0.3}, {is_hidden_in_part ? 2.0 : 4.0, 0.0, 0.0}, 1.2, Place::kUnobserved, 0.05);
+    // Seven echoes beyond a gap that connects nothing.
+    if (is_hidden_in_part) things.face({x + 3.7, -0.9, 0.3}, {0.0, 0.05, 0.0}, 0.3, Place::kUnobserved, 0.05);
+    const std::size_t moving = followed.step(things);
+    const bool is_known = k > 8;
+    EXPECT_TRUE(!is_known || moving == things.judged.points.size()) << "scan " << k << ": " << moving;
+  }
+  EXPECT_EQ(followed.candidates.size(), 2U);
+}
+
+TEST(ObjectTracker, AThinThingNeverMoves) {
+  Followed followed;
+  for (int k = 0; k < 10; ++k) {
+    JudgedThings things(0.1 * k);
+    things.face({8.0 + 0.5 * k, 2.0, 2.2}, {0.0, 1.5, 0.0}, 0.05, Place::kNew, 0.05);
+    EXPECT_EQ(followed.step(things), 0U);
+  }
+}
+
+TEST(ObjectTracker, WhatIsLongerThanAnyVehicleIsNotFollowed) {
+  for (const double length : {24.0, 26.0}) {
+    Followed followed;
+    JudgedThings things(0.0);
+    things.face({-12.0, 6.0, 0.3}, {length, 0.0, 0.0}, 1.2, Place::kNew, 0.1);
+    EXPECT_EQ(followed.step(things) > 0, length < 25.0);
+    EXPECT_EQ(followed.tracker.objects().size(), length < 25.0 ? 1U : 0U);
+  }
+}
+
+TEST(ObjectTracker, NumbersEndWithTheThingAndAreNotUsedAgain) {
+  Followed followed;
+  const auto seeAt = [&](double stamp) {
+    JudgedThings things(stamp);
+    addVehicle(things, 8.0, 2.0, Place::kNew);
+    followed.step(things);
+    return followed.tracker.objects().at(0).id;
+  };
+  const std::uint32_t first = seeAt(0.0);
+  followed.step(JudgedThings(0.25));
+  EXPECT_TRUE(followed.tracker.objects().empty());
+  EXPECT_EQ(seeAt(0.5), first) << "hidden for a moment";
+  followed.step(JudgedThings(1.0));
+  followed.step(JudgedThings(1.25));
+  const std::uint32_t second = seeAt(1.5);
+  EXPECT_GT(second, first) << "forgotten in between";
+  followed.tracker.reset();
+  EXPECT_TRUE(followed.tracker.objects().empty());
+}
+
+TEST(ObjectTracker, MemoryIsBounded) {
+  Followed followed;
+  std::size_t after_a_while = 0;
+  for (int k = 0; k < 400; ++k) {
+    JudgedThings things(0.1 * k);
+    things.face({5.0 + 3.0 * (k % 9), 2.0, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kNew);
+    followed.step(things);
+    if (k == 100) after_a_while = followed.tracker.memoryBytes();
+  }
+  EXPECT_GT(after_a_while, 0U);
+  EXPECT_LE(followed.tracker.memoryBytes(), 2 * after_a_while);
+}
+
+}  // namespace
+}  // namespace donex
