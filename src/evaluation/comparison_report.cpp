@@ -80,6 +80,7 @@ json predictionOf(const ScoredPrediction& prediction) {
   json result{{"name", prediction.name},
               {"scans", evaluation.scans()},
               {"total", countsOf(evaluation.total())},
+              {"phantoms", evaluation.phantoms()},
               {"objects", objectsOf(evaluation.objects())},
               {"objects_by_class", json::array()},
               {"figures", prediction.figures ? figuresOf(*prediction.figures) : json(nullptr)},
@@ -175,7 +176,7 @@ std::string toJson(const ScoredPrediction& prediction) { return textOf(predictio
 
 std::string toCsv(const Comparison& comparison) {
   std::string text =
-      "sequence,prediction,group,member,tp,fp,fn,tn,iou,precision,recall,objects_found,objects,median_time_s,"
+      "sequence,prediction,group,member,tp,fp,fn,tn,iou,precision,recall,objects_found,objects,phantoms,median_time_s,"
       "p99_time_s,mean_cpu_time_s,peak_memory_bytes\n";
   for (const SequenceComparison& sequence : comparison.sequences) {
     for (const ScoredPrediction& prediction : sequence.predictions) {
@@ -185,10 +186,11 @@ std::string toCsv(const Comparison& comparison) {
       const std::string run = figures ? fmt::format("{:.6f},{:.6f},{:.6f},{}", figures->median_time, figures->p99_time,
                                                     figures->mean_cpu_time, figures->peak_memory)
                                       : ",,,";
-      text += csvLine(start, "total", "", evaluation.total(),
-                      fmt::format("{},{},{}", evaluation.objects().found, evaluation.objects().all, run));
+      text += csvLine(
+          start, "total", "", evaluation.total(),
+          fmt::format("{},{},{},{}", evaluation.objects().found, evaluation.objects().all, evaluation.phantoms(), run));
       visitGroups(evaluation, [&](const char* group, const std::string& name, const Counts& counts) {
-        text += csvLine(start, group, name, counts, ",,,,,");
+        text += csvLine(start, group, name, counts, ",,,,,,");
       });
     }
   }

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "evaluation/object_speeds.h"
+#include "evaluation/phantoms.h"
 #include "evaluation/ratio.h"
 #include "io/sequence.h"
 
@@ -45,16 +46,23 @@ void Evaluation::add(std::size_t scan_index, const std::vector<Eigen::Vector3f>&
   if (!scores(scan_index)) return;
   ++scans_;
   std::map<std::uint32_t, Counts> instances;  // by label
+  std::vector<Eigen::Vector3f> false_echoes, truly_moving;
   for (std::size_t i = 0; i < echoes.size(); ++i) {
+    if (isMoving(truth[i]) && echoes[i].allFinite()) truly_moving.push_back(echoes[i]);
     const double range = echoes[i].head<2>().cast<double>().norm();
     const bool in_range = range <= rules_.max_range;  // not so for NaN
     if (!in_range || !isScored(truth[i])) continue;
     addEcho(range, truth[i], isMoving(prediction[i]));
+    const bool is_false = !isMoving(truth[i]) && isMoving(prediction[i]) && echoes[i].allFinite();
+    if (is_false) false_echoes.push_back(echoes[i]);
     const bool is_object = isMoving(truth[i]) && instanceOfLabel(truth[i]) != 0;
     if (is_object) instances[truth[i]].add(true, isMoving(prediction[i]));
   }
+  phantoms_ += countPhantoms(false_echoes, truly_moving);
   for (const auto& [label, counts] : instances) addObject(label, counts, speed_of(label));
 }
+
+double Evaluation::phantomsPerScan() const { return ratio(phantoms_, scans_); }
 
 void Evaluation::addObject(std::uint32_t truth, const Counts& counts, const std::optional<double>& speed) {
   if (speed) {

@@ -73,6 +73,9 @@ class Evaluation {
            const std::vector<std::uint32_t>& prediction, const SpeedOf& speed_of);
 
   std::size_t scans() const { return scans_; }
+  /// False moving objects (phantoms.h), and how many a scan has on average; NaN without scans.
+  std::size_t phantoms() const { return phantoms_; }
+  double phantomsPerScan() const;
   const Counts& total() const { return total_; }
   /// By true class (lower 16 bits of the label).
   const std::map<std::uint32_t, Counts>& byClass() const { return by_class_; }
@@ -90,6 +93,7 @@ class Evaluation {
 
   ScoringRules rules_;
   std::size_t scans_ = 0;
+  std::size_t phantoms_ = 0;
   Counts total_;
   std::map<std::uint32_t, Counts> by_class_;
   std::vector<Counts> by_range_;

@@ -76,13 +76,14 @@ std::vector<std::string> figuresOf(const NamedEvaluation& column) {
 
 std::string overallTable(const std::vector<NamedEvaluation>& columns) {
   std::vector<std::vector<std::string>> rows{
-      {"prediction", "IoU", "P", "R", "scans", "echoes", "moving", "objects", "a scan", "CPU", "memory"}};
+      {"prediction", "IoU", "P", "R", "scans", "echoes", "moving", "objects", "phantoms", "a scan", "CPU", "memory"}};
   for (const auto& column : columns) {
     const Counts& total = column.evaluation->total();
     const ObjectCounts& objects = column.evaluation->objects();
     rows.push_back({column.name, number(total.iou()), number(total.precision()), number(total.recall()),
                     fmt::format("{}", column.evaluation->scans()), fmt::format("{}", total.total()),
-                    fmt::format("{}", total.moving()), fmt::format("{} of {}", objects.found, objects.all)});
+                    fmt::format("{}", total.moving()), fmt::format("{} of {}", objects.found, objects.all),
+                    fmt::format("{:.2f} a scan", column.evaluation->phantomsPerScan())});
     for (const std::string& figure : figuresOf(column)) rows.back().push_back(figure);
   }
   return formatRows(rows);

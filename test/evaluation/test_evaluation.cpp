@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "evaluation/evaluation.h"
+#include "evaluation/phantoms.h"
 #include "support/sequences.h"
 
 namespace donex {
@@ -88,6 +89,66 @@ TEST(Evaluation, EqualsASecondComputation) {
     EXPECT_DOUBLE_EQ(evaluation.total().precision(), plain.precision);
     EXPECT_DOUBLE_EQ(evaluation.total().recall(), plain.recall);
   }
+}
+
+/// The rule once more, plainly: clusters grow echo by echo until nothing is near enough any more.
+std::size_t plainPhantoms(std::vector<Eigen::Vector3f> left, const std::vector<Eigen::Vector3f>& moving) {
+  std::size_t phantoms = 0;
+  while (!left.empty()) {
+    std::vector<Eigen::Vector3f> cluster{left.back()};
+    left.pop_back();
+    for (std::size_t i = 0; i < cluster.size(); ++i) {
+      for (std::size_t k = left.size(); k-- > 0;) {
+        if ((left[k] - cluster[i]).cast<double>().norm() > 0.8) continue;
+        cluster.push_back(left[k]);
+        left.erase(left.begin() + static_cast<std::ptrdiff_t>(k));
+      }
+    }
+    bool is_clear = true;
+    for (const auto& echo : cluster) {
+      for (const auto& other : moving) is_clear = is_clear && (other - echo).cast<double>().norm() > 1.5;
+    }
+    phantoms += cluster.size() >= 5 && is_clear ? 1 : 0;
+  }
+  return phantoms;
+}
+
+TEST(Phantoms, EqualThePlainRule) {
+  std::mt19937 random(21);
+  std::size_t all = 0;
+  for (int round = 0; round < 40; ++round) {
+    std::uniform_real_distribution<float> place(-6.0F, 6.0F);
+    const auto draw = [&](std::size_t size) {
+      std::vector<Eigen::Vector3f> echoes(size);
+      for (auto& echo : echoes) echo = {place(random), place(random), 0.2F * place(random)};
+      return echoes;
+    };
+    const auto false_echoes = draw(10 + 6 * static_cast<std::size_t>(round));
+    const auto moving = draw(static_cast<std::size_t>(round % 4));
+    EXPECT_EQ(countPhantoms(false_echoes, moving), plainPhantoms(false_echoes, moving));
+    all += countPhantoms(false_echoes, moving);
+  }
+  EXPECT_GT(all, 50U);
+}
+
+TEST(Phantoms, AreCountedOfWhatIsJudged) {
+  std::vector<Eigen::Vector3f> echoes;
+  const auto row = [&](float x) {
+    for (int i = 0; i < 5; ++i) echoes.emplace_back(x, 0.7F * static_cast<float>(i), 0.0F);
+  };
+  for (const float x : {10.0F, 20.0F, 30.0F, 60.0F}) row(x);
+  echoes.emplace_back(31.4F, 0.0F, 0.0F);  // truly moving, near the third row
+  Labels truth(echoes.size(), 9), prediction(echoes.size(), 251);
+  truth.back() = 251;
+  for (std::size_t i = 5; i < 10; ++i) truth[i] = 0;  // the second row is not judged; the fourth lies beyond 50 m
+  Evaluation evaluation;
+  EXPECT_TRUE(std::isnan(evaluation.phantomsPerScan()));
+  evaluation.add(4, echoes, truth, prediction);  // warm-up
+  evaluation.add(5, echoes, truth, prediction);
+  prediction[0] = 9;  // four echoes are none
+  evaluation.add(6, echoes, truth, prediction);
+  EXPECT_EQ(evaluation.phantoms(), 1U);
+  EXPECT_DOUBLE_EQ(evaluation.phantomsPerScan(), 0.5);
 }
 
 TEST(Evaluation, ClassesAndBandsAddUp) {
