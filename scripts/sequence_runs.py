@@ -15,6 +15,13 @@ class Figures:
     precision: str
     recall: str
     milliseconds: str
+    phantoms: str = "nan"  # a scan
+
+    def __post_init__(self):
+        # A ratio of nothing is printed as a dash: where nothing moves there is no recall.
+        for name in ("iou", "precision", "recall"):
+            if getattr(self, name) == "-":
+                setattr(self, name, "nan")
 
     def __str__(self):
         values = " / ".join(f"{float(value):.3f}" for value in (self.iou, self.precision, self.recall))
@@ -35,11 +42,12 @@ def label(sequence, arguments=(), settings=()):
     for setting in settings:
         command += ["--set", setting]
     run = subprocess.run(command, capture_output=True, text=True, check=False)
-    scores = re.search(r"^this run +([\d.]+) +([\d.]+) +([\d.]+)", run.stdout, re.MULTILINE)
+    scores = re.search(r"^this run +([\d.]+|-) +([\d.]+|-) +([\d.]+|-)", run.stdout, re.MULTILINE)
+    phantoms = re.search(r"([\d.]+|nan) a scan", run.stdout)
     time = re.search(r"CPU: median ([\d.]+) ms", run.stdout)
-    if run.returncode != 0 or scores is None or time is None:
+    if run.returncode != 0 or scores is None or time is None or phantoms is None:
         sys.exit(f"{' '.join(command)}\n{run.stdout}{run.stderr}")
-    return Figures(*scores.groups(), time.group(1))
+    return Figures(*scores.groups(), time.group(1), phantoms.group(1))
 
 
 def progress(text):
