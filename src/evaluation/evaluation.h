@@ -13,7 +13,7 @@
 
 namespace donex {
 
-/// What is scored: the rules that all figures of this package's README follow.
+/// What is scored: the rules that all figures of docs/results.md follow.
 struct ScoringRules {
   std::size_t first_scan = 5;  ///< scans before are warm-up
   double max_range = 50.0;     ///< of the sensor in x, y [m]

@@ -7,8 +7,8 @@
 
 namespace donex {
 
-/// Topics, services and parameters as documented in README.md. All callbacks run on nh's queue, which must be
-/// served by one thread at a time.
+/// Topics and services as documented in README.md, parameters in docs/parameters.md. All callbacks run on nh's
+/// queue, which must be served by one thread at a time.
 class DonexNode {
  public:
   /// Subscribes relative names with `nh`, publishes and reads parameters with `pnh`; both share one queue.

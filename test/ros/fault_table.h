@@ -1,4 +1,4 @@
-// What was tried and what came of it, as the README shows it: written by the tests themselves.
+// What was tried and what came of it, as docs/faults.md shows it: written by the tests themselves.
 #pragma once
 
 #include <fstream>

@@ -141,16 +141,16 @@ TEST_F(OtherProcess, interruptedInTheMiddleOfAScan) {
 }
 
 /// The last test: rostest counts tests and ignores exit codes.
-TEST(TableOfFaults, isTheReadmes) {
+TEST(TableOfFaults, isThatOfTheDocuments) {
   const testing::UnitTest& run = *testing::UnitTest::GetInstance();
   if (run.test_to_run_count() != run.total_test_count()) GTEST_SKIP() << "only with all rows";
   if (run.failed_test_count() != 0) GTEST_SKIP() << "only with all rows, and some test failed";
   const std::string table = test::FaultTable::instance().text();
   test::FaultTable::instance().write(DONEX_FAULT_TABLE);
-  std::ifstream file(DONEX_README);
-  const std::string readme((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  EXPECT_NE(readme.find(table), std::string::npos)
-      << "the README shows another table: scripts/fault_table " << DONEX_FAULT_TABLE << "\n"
+  std::ifstream file(DONEX_FAULT_PAGE);
+  const std::string page((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  EXPECT_NE(page.find(table), std::string::npos)
+      << "docs/faults.md shows another table: scripts/fault_table " << DONEX_FAULT_TABLE << "\n"
       << table;
 }
 

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""What the README tells to type exists: programs and their options, launch files and their arguments, files.
+"""What the documents name exists: programs and their options, launch files and their arguments, files, links.
 
-Usage: test_readme.py PACKAGE DIRECTORY_OF_PROGRAMS
+Usage: test_documents.py PACKAGE DIRECTORY_OF_PROGRAMS
 """
 import pathlib
 import re
@@ -10,7 +10,8 @@ import sys
 import xml.etree.ElementTree
 
 PACKAGE, PROGRAMS = (pathlib.Path(argument) for argument in sys.argv[1:3])
-FOLDERS = "scripts|config|test|docs|rviz|workflow|launch"
+FOLDERS = "scripts|config|test|docs|rviz|workflow|launch|src|include"
+LONGEST_README = 180  # lines
 
 
 def program_of(name):
@@ -71,24 +72,54 @@ class Check:
             self.program(found[1], re.findall(r"`(--[a-z-]+)`", found[2]))
 
 
+    def page(self, text):
+        for block in re.findall(r"```sh\n(.*?)```", text, re.DOTALL):
+            for line in block.splitlines():
+                self.command(line)
+        prose = without_code(text)
+        for span in re.findall(r"`([^`]+)`", prose):
+            self.command(" ".join(span.split()))
+        for line in prose.splitlines():
+            self.row(line)
+        for path in re.findall(rf"(?<![\w/.-])(?:\./)?((?:{FOLDERS})/[\w./-]*\w)", text):
+            self.expect((PACKAGE / path).exists(), f"there is no {path}")
+
+    def links(self, page, text):
+        for target in re.findall(r"\]\(([^)\s]+)\)", without_code(text)):
+            if re.match(r"https?:", target):
+                continue
+            name, _, anchor = target.partition("#")
+            file = (page.parent / name) if name else page
+            self.expect(file.exists(), f"the link {target} leads nowhere")
+            if anchor and file.exists():
+                self.expect(anchor in anchors(file.read_text()), f"{name or page.name} has no heading #{anchor}")
+
+
+def without_code(text):
+    return re.sub(r"```.*?```", "", text, flags=re.DOTALL)
+
+
+def anchors(text):
+    """Of all headings, as GitHub makes them."""
+    titles = re.findall(r"^#+ (.*)$", without_code(text), re.MULTILINE)
+    return {re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-") for title in titles}
+
+
 def main():
-    text = (PACKAGE / "README.md").read_text()
     check = Check()
-    for block in re.findall(r"```sh\n(.*?)```", text, re.DOTALL):
-        for line in block.splitlines():
-            check.command(line)
-    prose = re.sub(r"```.*?```", "", text, flags=re.DOTALL)
-    for span in re.findall(r"`([^`]+)`", prose):
-        check.command(" ".join(span.split()))
-    for line in prose.splitlines():
-        check.row(line)
-    for path in re.findall(rf"(?<![\w/.-])(?:\./)?((?:{FOLDERS})/[\w./-]*\w)", text):
-        check.expect((PACKAGE / path).exists(), f"there is no {path}")
-    if check.checked < 50:
-        sys.exit(f"only {check.checked} things were found in the README: it is not read as it is written")
+    for page in [PACKAGE / "README.md", PACKAGE / "CONTRIBUTING.md", *sorted((PACKAGE / "docs").glob("*.md"))]:
+        text = page.read_text()
+        before = len(check.faults)
+        check.page(text)
+        check.links(page, text)
+        check.faults[before:] = [f"{page.relative_to(PACKAGE)}: {fault}" for fault in check.faults[before:]]
+    length = len((PACKAGE / "README.md").read_text().splitlines())
+    check.expect(length <= LONGEST_README, f"README.md has {length} lines, more than {LONGEST_README}")
+    if check.checked < 100:
+        sys.exit(f"only {check.checked} names and links were found: the documents are not read as they are written")
     if check.faults:
-        sys.exit("README.md: " + "\n".join(check.faults))
-    print(f"{check.checked} programs, options, arguments and files of the README: all there")
+        sys.exit("\n".join(check.faults))
+    print(f"{check.checked} programs, options, arguments, files and links of the documents: all there")
 
 
 if __name__ == "__main__":
