@@ -1,4 +1,4 @@
-// A moving thing: connected echoes followed over time (algorithm: evidence step "objects").
+// A moving object: connected echoes followed over time (algorithm: "Objects").
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""What the documents name exists: programs and their options, launch files and their arguments, files, links.
+"""What the documents name exists: programs and their options, launch files and their arguments, files, links; and the
+headings that comments cite.
 
 Usage: test_documents.py PACKAGE DIRECTORY_OF_PROGRAMS
 """
@@ -94,6 +95,20 @@ class Check:
             if anchor and file.exists():
                 self.expect(anchor in anchors(file.read_text()), f"{name or page.name} has no heading #{anchor}")
 
+    def citations(self):
+        """Comments cite docs/algorithm.md by heading: (algorithm: "Free evidence", "Careful sight")."""
+        titles = set(headings((PACKAGE / "docs" / "algorithm.md").read_text()))
+        for folder in ("include", "src", "test"):
+            for file in sorted((PACKAGE / folder).rglob("*.[hc]*")):
+                text = re.sub(r"\n\s*//[/!]?<?\s*", " ", file.read_text(errors="replace"))
+                for cited in re.findall(r"algorithm(?:\.md)?(?:: | ?\(|, )((?:\"[^\"\n]+\"(?:, )?)+)", text):
+                    for title in re.findall(r"\"([^\"]+)\"", cited):
+                        self.expect(title in titles, f"{file.relative_to(PACKAGE)} cites a heading {title}")
+
+
+def headings(text):
+    return re.findall(r"^#+ (.*)$", without_code(text), re.MULTILINE)
+
 
 def without_code(text):
     return re.sub(r"```.*?```", "", text, flags=re.DOTALL)
@@ -101,8 +116,7 @@ def without_code(text):
 
 def anchors(text):
     """Of all headings, as GitHub makes them."""
-    titles = re.findall(r"^#+ (.*)$", without_code(text), re.MULTILINE)
-    return {re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-") for title in titles}
+    return {re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-") for title in headings(text)}
 
 
 def main():
@@ -113,6 +127,7 @@ def main():
         check.page(text)
         check.links(page, text)
         check.faults[before:] = [f"{page.relative_to(PACKAGE)}: {fault}" for fault in check.faults[before:]]
+    check.citations()
     length = len((PACKAGE / "README.md").read_text().splitlines())
     check.expect(length <= LONGEST_README, f"README.md has {length} lines, more than {LONGEST_README}")
     if check.checked < 100:

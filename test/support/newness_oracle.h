@@ -1,4 +1,4 @@
-// Algorithm section 5, steps 1 to 4, as the comments of newness.h word them: std::map of voxels and of cells.
+// The algorithm's evidence of places, as the comments of newness.h word them: std::map of voxels and of cells.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// Algorithm sections 1 and 2 read literally, as slowly as they are written: std::set and a naive traversal.
+// The paper's rule, read literally and as slowly as it is written: std::set and a naive traversal
+// (algorithm: "The paper's rule in 3D", "The paper's rule in 2D").
 #pragma once
 
 #include <array>

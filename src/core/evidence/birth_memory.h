@@ -1,4 +1,4 @@
-// When each voxel became occupied, and whether it had been free before (algorithm section 5, steps 1 to 4).
+// When each voxel became occupied, and whether it had been free before (algorithm: "Birth age").
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// The local ground: which echoes lie on it (algorithm section 5, step 5).
+// The local ground: which echoes lie on it (algorithm: "Ground").
 #pragma once
 
 #include <cstddef>

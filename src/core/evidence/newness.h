@@ -38,7 +38,7 @@ class ScanClock {
   std::array<double, kRememberedStamps> stamps_{};  ///< [s] by scan, modulo their number
 };
 
-/// The 3D grid's answer, from each voxel's birth (algorithm section 5, steps 1 to 4).
+/// The 3D grid's answer, from each voxel's birth (algorithm: "Evidence").
 class Newness3d {
  public:
   explicit Newness3d(const Config& config) : config_(config.evidence), memory_(config) {}
@@ -68,7 +68,7 @@ class Newness3d {
 };
 
 /// The 2D grid's answer, from ranges of heights a cell: ranging, previous range and resizing with a past
-/// (algorithm sections 2 and 5). Only the extension of a range is judged anew.
+/// (algorithm: "Evidence in 2D"). Only the extension of a range is judged anew.
 class Newness2d {
  public:
   explicit Newness2d(const Config& config);

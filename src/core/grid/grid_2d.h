@@ -10,8 +10,8 @@
 
 namespace donex {
 
-/// The remembered ranges R_k of algorithm section 2, heights in voxel edge lengths above the window's
-/// floor level of the first scan. A scan is shift, then take.
+/// The remembered ranges R of the algorithm ("The paper's rule in 2D"), heights in voxel edge lengths above the
+/// window's floor level of the first scan. A scan is shift, then take.
 class Grid2d {
  public:
   explicit Grid2d(const Config& config);

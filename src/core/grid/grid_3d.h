@@ -13,7 +13,7 @@
 
 namespace donex {
 
-/// M_k of algorithm section 1, in the window's coordinates. A scan is shift, then take.
+/// M of the algorithm ("The paper's rule in 3D"), in the window's coordinates. A scan is shift, then take.
 class Grid3d {
  public:
   explicit Grid3d(const Config& config);

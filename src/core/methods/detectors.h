@@ -18,7 +18,7 @@ std::unique_ptr<Detector> makePaperDetector3d(const Config& config);
 std::unique_ptr<Detector> makeZBufferDetector(const Config& config);
 std::unique_ptr<Detector> makePaperDetector2d(const Config& config);
 
-// The live methods of the comparison (algorithm section 6), each in a file of its own.
+// The live methods of the comparison (algorithm: "Comparison methods"), each in a file of its own.
 std::unique_ptr<Detector> makeRangeResidualDetector(const Config& config);
 std::unique_ptr<Detector> makeRayTracingDetector(const Config& config);
 std::unique_ptr<Detector> makeMotionVoxelGridDetector(const Config& config);

@@ -42,12 +42,12 @@ class EvidenceDetector : public Detector {
     newness_.shift(scan.odom_from_base);  // voxel shift (paper, "Ego motion")
     newness_.window().enter(scan, scan_);
     place(scan.stamp);
-    findGround();   // step 5
-    judgePlaces();  // steps 1 to 4, asked of the scans before this one
+    findGround();   // algorithm: "Ground"
+    judgePlaces();  // asked of the scans before this one
     history_.add(scan, judged_.is_echo);
     history_.askFrom(judged_.odom_from_points);
     labelPlaces(labels);
-    if (config_.objects.enabled) labelObjects(labels);  // step 6
+    if (config_.objects.enabled) labelObjects(labels);
     dynamic_ = labels.dynamic;
   }
 

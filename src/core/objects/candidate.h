@@ -1,4 +1,4 @@
-// A thing of one scan that may move (algorithm section 5, step 6).
+// A segment: connected echoes of one scan that may be an object (algorithm: "Segments").
 #pragma once
 
 #include <algorithm>

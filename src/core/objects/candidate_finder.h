@@ -1,4 +1,4 @@
-// From connected echoes to things that may move (algorithm section 5, step 6).
+// From connected echoes to segments that may move (algorithm: "Segments", "Trimming").
 #pragma once
 
 #include <vector>

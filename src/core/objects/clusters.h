@@ -1,4 +1,4 @@
-// Connected echoes (algorithm section 5, step 6).
+// Connected echoes (algorithm: "Clusters").
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// What the present scan says of the place where an object was (algorithm section 5, step 6).
+// What the present scan says of the place where an object was (algorithm: "Proofs of motion").
 #pragma once
 
 #include <Eigen/Geometry>

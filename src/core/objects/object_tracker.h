@@ -1,4 +1,4 @@
-// Connected echoes followed over time: is this thing moving? (algorithm section 5, step 6)
+// Segments followed over time: does this object move? (algorithm: "Tracks", "Proofs of motion")
 #pragma once
 
 #include <limits>

@@ -8,7 +8,7 @@
 
 namespace donex {
 
-/// Free evidence (algorithm section 5, step 1): "never hit before" is not "was free before".
+/// Free evidence (algorithm: "Free evidence"): "never hit before" is not "was free before".
 /// It is asked only of voxels that are newly hit, so a scan is kept as its sight image, nothing more.
 class SightHistory {
  public:

@@ -11,9 +11,9 @@
 
 namespace donex {
 
-/// The lines of sight of a scan as an image of ranges around the sensor (algorithm section 5, steps 1
-/// and 2). A pixel holds the nearest range of its direction; "free" needs a surface behind the asked
-/// point, never the mere absence of an echo (the sky, a dark car).
+/// The lines of sight of a scan as an image of ranges around the sensor (algorithm: "Free
+/// evidence", "Careful sight"). A pixel holds the nearest range of its direction; "free" needs a surface behind the
+/// asked point, never the mere absence of an echo (the sky, a dark car).
 ///
 /// Careful reading, as one minimum per pixel:
 ///  - between two beams the nearer one counts, up to `largest_gap` apart: sparse sensors leave no holes;

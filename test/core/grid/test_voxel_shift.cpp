@@ -1,4 +1,4 @@
-// A thousand small shifts: the residual is carried, contents stay within one voxel (algorithm section 4).
+// A thousand small shifts: the residual is carried, contents stay within one voxel (algorithm: "Ego motion").
 #include <gtest/gtest.h>
 
 #include "core/grid/grid_2d.h"
