@@ -8,7 +8,7 @@ namespace {
 constexpr std::size_t kWarmUp = 2;
 
 struct Times {
-  std::vector<double> cpu, wall;  ///< one a scan [ms]
+  std::vector<double> cpu, wall;  ///< one per scan [ms]
 
   template <class Work>
   void add(Work&& work) {

@@ -10,7 +10,7 @@
 
 namespace donex::benchmark {
 
-/// CPU time a scan [ms], of all threads; the machine may be busy with other things.
+/// CPU time per scan [ms], of all threads; the machine may be busy with other work.
 struct Measured {
   double median = 0.0, p99 = 0.0, least = 0.0;
   double wall = 0.0;  ///< median of the elapsed time [ms]

@@ -8,7 +8,7 @@
 namespace donex::benchmark {
 
 /// The floor: one pass that transforms every echo, computes its cell and touches it once: a byte a cell in 2D, a
-/// bit a voxel in 3D. As lean as plain code gets; nothing can be judged with less.
+/// bit per voxel in 3D. As lean as plain code gets; nothing can be judged with less.
 Measured floorOf(Method method, const Config& config, const Scans& scans);
 
 /// The naive way of de-shadowing: the Amanatides-Woo traversal of every line of sight, each voxel touched.

@@ -10,7 +10,7 @@ namespace donex::benchmark {
 
 using Scans = std::vector<Scan>;
 
-/// The paper's Table 1 setting: `echoes` echoes a scan, all of them in x 0..75 m, y +-25 m of the sensor; a
+/// The paper's Table 1 setting: `echoes` echoes per scan, all of them in x 0..75 m, y +-25 m of the sensor; a
 /// 128-beam sensor in a street, a turned copy fills what one turn leaves open. Built once for each number.
 const Scans& scansInFront(std::size_t echoes);
 

@@ -1,4 +1,4 @@
-# Sourced by the scripts beside it: where things are, and an environment in which ROS 1 works.
+# Sourced by the scripts beside it: folders, and an environment in which ROS 1 works.
 
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 build=$repository/build

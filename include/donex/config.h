@@ -1,4 +1,4 @@
-// Everything a user can set, with its default and unit; ranges and meanings stand in parameter_list.h.
+// Everything a user can set, with its default and unit; ranges and meanings stand in parameters.h.
 #pragma once
 
 #include <array>
@@ -97,7 +97,7 @@ struct MotionConfig {
   bool deskew = true;
 };
 
-/// What a driver's clouds need to be told about where they cannot tell it themselves.
+/// What the clouds of a driver do not say themselves.
 struct CloudConfig {
   std::string time_field;  // empty: found by its name
   TimeEncoding time_encoding = TimeEncoding::kAuto;
@@ -126,7 +126,7 @@ struct Config {
   CloudConfig cloud;
   NodeConfig node;
 
-  /// Every fault, a sentence each; empty when the configuration can be used.
+  /// Every fault, one sentence each; empty when the configuration can be used.
   std::vector<std::string> faults() const;
 
   /// One of DONEX's grids, with at least one step beyond the paper.

@@ -25,7 +25,7 @@ class Detector {
 
   /// Judges one scan. Stamps must not run backwards: the caller resets first (throws
   /// std::invalid_argument otherwise, the memory is left untouched). Poses must be finite.
-  /// `labels` is overwritten and has one entry an echo.
+  /// `labels` is overwritten and has one entry per echo.
   virtual void process(const Scan& scan, EchoLabels& labels) = 0;
 
   /// Forgets everything; the next scan is a first scan.
@@ -38,7 +38,7 @@ class Detector {
   /// Computed on demand.
   virtual std::vector<Eigen::Vector3f> dynamicCells() const = 0;
 
-  /// One an echo of the last scan; empty where the method cannot tell. Computed on demand.
+  /// One per echo of the last scan; empty where the method cannot tell. Computed on demand.
   virtual std::vector<EchoReason> reasons() const { return {}; }
 
   /// Cells of the 3D methods; empty for the others. Computed on demand, once watched, for scans since then.

@@ -1,4 +1,4 @@
-// Why an echo got its label, and what the grid remembers: for the eye of whoever looks, not for the algorithm.
+// Why an echo got its label, and what the grid remembers: for people who look at it, not for the algorithm.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// How much memory a configuration takes, said before it is taken.
+// How much memory a configuration takes, known before it is taken.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ constexpr std::size_t kUsualScan = 120000;  // echoes; what a configuration is j
 ///  - the paper's rule after the first scan, and it never grows;
 ///  - with evidence once as many scans are kept as may be, as long as surfaces fill no more bricks than the ground plan
 ///    has (a wood may). What a sensor does not cover is reserved, not used: the system gives less.
-/// For the methods for comparison, their dense grids alone.
+/// For the comparison methods: their dense grids alone.
 double memoryBound(const Config& config, std::size_t echoes);
 
 }  // namespace donex

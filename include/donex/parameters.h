@@ -8,7 +8,7 @@ namespace donex {
 /// How a parameter is called and what it means.
 struct ParameterInfo {
   const char* name;
-  const char* unit;     ///< empty where there is none
+  const char* unit;     ///< empty where it has no unit
   const char* meaning;  ///< one sentence
   bool reconfigurable;  ///< also in dynamic_reconfigure
 };

@@ -23,7 +23,7 @@ struct Scan {
   Eigen::Isometry3d odomFromSensor() const { return odom_from_base * base_from_sensor; }
 };
 
-/// Labels of a scan, one entry an echo, in the order of the echoes.
+/// Labels of a scan, one entry per echo, in the order of the echoes.
 struct EchoLabels {
   std::vector<std::uint8_t> dynamic;   ///< 1 dynamic, 0 static
   std::vector<std::uint8_t> observed;  ///< 1 where the grid had evidence to judge the echo

@@ -76,7 +76,7 @@ struct Serializer<donex::Checked<Message>> {
 
 namespace donex {
 
-/// The message of that type; throws DataError where the bytes are none.
+/// The message of that type; throws DataError where the bytes are not one.
 template <class Message>
 typename Message::ConstPtr parse(const rosbag::MessageInstance& message) {
   try {

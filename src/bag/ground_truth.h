@@ -10,8 +10,8 @@
 
 namespace donex {
 
-/// SemanticKITTI labels, one an echo in the cloud's order: its field `label` (UINT32). Empty where it has none.
-/// `layout` is what judgeLayout said of this cloud.
+/// SemanticKITTI labels, one per echo in the cloud's order: its field `label` (UINT32). Empty where the cloud has no
+/// such field. `layout` is what judgeLayout said of this cloud.
 std::vector<std::uint32_t> truthOf(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout);
 
 }  // namespace donex

@@ -28,7 +28,7 @@ struct LabelBagSummary {
   double duration = 0.0;             ///< from the first to the last message of the input [s]
   std::vector<double> times;         ///< parsing and judging, a labelled cloud [s]
   Evaluation evaluation;             ///< where the clouds carry their truth, as simulated ones do
-  std::vector<std::string> remarks;  ///< why something was dropped, refused or forgotten: each kind's first
+  std::vector<std::string> remarks;  ///< why data were dropped, refused or forgotten: the first of each kind
 };
 
 /// `progress` hears how many of how many messages are done.

@@ -31,7 +31,7 @@ struct BirdView {
   static constexpr int kWidth = 500;    ///< cells along an edge: 50 m to each side
 };
 
-/// `predictions` may hold empty ones (nothing was predicted there); others have a label an echo.
+/// `predictions` may hold empty ones (nothing was predicted there); others have a label per echo.
 BirdView makeBirdView(std::size_t scan, const std::vector<Eigen::Vector3f>& echoes,
                       const std::vector<std::uint32_t>& truth,
                       const std::vector<std::vector<std::uint32_t>>& predictions);
@@ -54,7 +54,7 @@ struct SequenceComparison {
   std::vector<NamedEvaluation> columns() const;
 };
 
-/// Scores label files (NNNNNN.label, anybody's) of the first `scans` scans. `progress` is called once a scan.
+/// Scores label files (NNNNNN.label, anybody's) of the first `scans` scans. `progress` is called once per scan.
 /// Throws DataError where the sequence cannot be read.
 SequenceComparison compareOnSequence(const SequenceReader& sequence, std::size_t scans,
                                      const std::vector<std::pair<std::string, std::filesystem::path>>& predictions,
@@ -66,7 +66,7 @@ struct MethodNote {
   bool live = true;
 };
 
-/// One line of the paper's Table 1 [s]; a time of 0 is none.
+/// One line of the paper's Table 1 [s]; a time of 0 was not measured.
 struct Table1Row {
   double voxel_size = 0.0;  ///< [m]
   std::string published_2d, published_3d;
@@ -84,13 +84,13 @@ struct Comparison {
 std::string toJson(const Comparison& comparison);
 /// One entry of that document's "predictions".
 std::string toJson(const ScoredPrediction& prediction);
-/// A line a sequence, prediction, group (total, class, range, speed) and member.
+/// One line per sequence, prediction, group (total, class, range, speed) and member.
 std::string toCsv(const Comparison& comparison);
 /// One page that holds all it shows: no other file, no network.
 std::string toHtml(const Comparison& comparison);
 
-/// The figures of a run beside its label files, run.json. Nothing where there is none; throws DataError where it cannot
-/// be understood.
+/// The figures of a run beside its label files, run.json. Empty where the file is missing; throws DataError where it
+/// cannot be understood.
 void writeRunFigures(const std::filesystem::path& directory, const RunFigures& figures);
 std::optional<RunFigures> readRunFigures(const std::filesystem::path& directory);
 

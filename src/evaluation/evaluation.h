@@ -83,7 +83,7 @@ class Evaluation {
   const std::vector<Counts>& byRange() const { return by_range_; }
   /// Moving instances by band of speed (kSpeedBandEnds): only their hits and misses; instances without a speed in none.
   const std::array<Counts, kSpeedBandEnds.size() + 1>& bySpeed() const { return by_speed_; }
-  /// Moving instances, once a scan, and by true class.
+  /// Moving instances, once per scan, and by true class.
   const ObjectCounts& objects() const { return objects_; }
   const std::map<std::uint32_t, ObjectCounts>& objectsByClass() const { return objects_by_class_; }
 

@@ -1,4 +1,4 @@
-// How fast the labelled things of a sequence move, from their instances alone.
+// How fast the labelled objects of a sequence move, from their instances alone.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace donex {
 
-/// SemanticKITTI's instance of an echo; 0 is none.
+/// SemanticKITTI's instance of an echo; 0: no instance.
 inline std::uint32_t instanceOfLabel(std::uint32_t label) { return label >> 16U; }
 
 /// Speeds of instances over ground, from the centres of their echoes in the odometry frame. A whole label is an

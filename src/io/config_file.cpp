@@ -47,7 +47,7 @@ class DocumentCounter : public YAML::EventHandler {
   int documents = 0;
 };
 
-/// YAML::LoadAll never ends for some texts that are no YAML (as ",a"): it finds document after document in them.
+/// YAML::LoadAll never ends for some texts that are not YAML (as ",a"): it finds document after document in them.
 bool holdsSeveralDocuments(const std::string& text) {
   std::istringstream stream(text);
   YAML::Parser parser(stream);

@@ -8,7 +8,7 @@
 namespace donex {
 
 /// Data that cannot be used. what() says of every fault which file (which line where it has lines) and why,
-/// a line each.
+/// one line each.
 class DataError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -20,7 +20,7 @@ class Faults {
   void add(std::string fault) { faults_.push_back(std::move(fault)); }
   bool empty() const { return faults_.empty(); }
   const std::vector<std::string>& list() const { return faults_; }
-  /// A line each; after the first twenty only how many more.
+  /// One line each; after the first twenty only how many more.
   std::string text() const;
   /// Throws DataError with text(), unless empty.
   void throwIfAny() const;

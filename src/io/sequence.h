@@ -25,7 +25,7 @@ inline bool isScored(std::uint32_t label) { return classOfLabel(label) > 1; }
 struct SequenceScan {
   double stamp = 0.0;                   ///< [s], whole nanoseconds
   std::vector<Eigen::Vector3f> echoes;  ///< sensor frame [m]; non-finite ones are kept
-  std::vector<float> intensities;       ///< one an echo
+  std::vector<float> intensities;       ///< one per echo
   Pose odom_from_sensor;
 };
 
@@ -58,7 +58,7 @@ class SequenceReader {
   SequenceScan scan(std::size_t index) const;
   std::vector<std::uint32_t> labels(std::size_t index) const;
 
-  /// What was assumed, a sentence each: no times.txt (10 Hz then), more poses or times than scans.
+  /// What was assumed, one sentence each: no times.txt (10 Hz then), more poses or times than scans.
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:
@@ -79,12 +79,12 @@ class SequenceReader {
 /// Writes a sequence, scan after scan. poses.txt holds the sensor's own poses: no calib.txt.
 class SequenceWriter {
  public:
-  /// Creates the directories. Throws DataError when something of a sequence is there already, a calib.txt too, or
+  /// Creates the directories. Throws DataError when parts of a sequence are there already, a calib.txt included, or
   /// nothing can be written.
   explicit SequenceWriter(std::filesystem::path directory);
 
   /// Throws DataError when the stamp is not later than the last or a file cannot be written,
-  /// std::invalid_argument when intensities or labels are not one an echo.
+  /// std::invalid_argument when intensities or labels are not one per echo.
   void add(const SequenceScan& scan);
   void add(const SequenceScan& scan, const std::vector<std::uint32_t>& labels);
 
@@ -98,7 +98,7 @@ class SequenceWriter {
   double last_stamp_ = 0.0;
 };
 
-/// More echoes than any scan has: a file so large is none.
+/// More echoes than any scan has: a larger file is not a scan.
 constexpr std::size_t kMostEchoes = 100000000;
 
 /// kLabelMoving where dynamic, kLabelStatic elsewhere.

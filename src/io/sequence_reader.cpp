@@ -44,7 +44,7 @@ void checkGaps(const fs::path& directory, const std::vector<std::size_t>& number
   }
 }
 
-/// Bytes in units of `unit`; adds a fault where they don't divide or the file is none.
+/// Bytes in units of `unit`; adds a fault where they don't divide or the file is too large for a scan.
 std::size_t countUnits(const fs::path& file, std::uintmax_t unit, const char* unit_name, Faults& faults) {
   std::error_code error;
   const std::uintmax_t bytes = fs::file_size(file, error);
@@ -86,7 +86,7 @@ Pose lidarPose(const Pose& camera, const Pose& camera_from_lidar) {
   return Pose::fromIsometry(tr.inverse() * camera.isometry() * tr);
 }
 
-/// One value a scan: fewer is a fault, more is worth a note.
+/// One value per scan: fewer is a fault, more is worth a note.
 void compareCount(const fs::path& file, std::size_t lines, std::size_t scans, Faults& faults,
                   std::vector<std::string>& notes) {
   const std::string counts = fmt::format("{}: {} lines for {} scans", file.string(), lines, scans);

@@ -19,7 +19,7 @@ std::size_t endOfDigits(const std::string& text, std::size_t from) {
 // rosparam reads YAML 1.1: "1e-3" and "010" would reach a node as a string and as eight. The same file has to
 // mean the same here, so that such spellings are refused.
 
-/// A sign or none, digits without a zero ahead of them.
+/// An optional sign, digits without a leading zero.
 bool isInteger(const std::string& text) {
   const std::size_t first = endOfSign(text), end = endOfDigits(text, first), digits = end - first;
   return digits > 0 && end == text.size() && (text[first] != '0' || digits == 1);
@@ -29,7 +29,7 @@ bool isExponent(const std::string& text) {
   if (text.size() < 3 || (text[0] != 'e' && text[0] != 'E')) return false;
   return (text[1] == '-' || text[1] == '+') && endOfDigits(text, 2) == text.size();
 }
-/// An integer; or a sign or none, digits with a point, an exponent or none.
+/// An integer; or an optional sign, digits with a point, an optional exponent.
 bool isReal(const std::string& text) {
   const std::size_t first = endOfSign(text), point = endOfDigits(text, first);
   if (point == text.size() || text[point] != '.') return isInteger(text);
@@ -56,7 +56,7 @@ std::string shown(const YAML::Node& value) {
   if (value.IsNull()) return "nothing";
   if (value.IsMap()) return "a map";
   if (value.IsSequence()) return "a list";
-  constexpr std::size_t kMost = 80;  // of a text that is no parameter, but half a book
+  constexpr std::size_t kMost = 80;  // characters of a text that is not a parameter's value
   const std::string& all = value.Scalar();
   const std::string text = all.size() > kMost ? all.substr(0, kMost) + "..." : all;
   return isQuoted(value) ? fmt::format("\"{}\"", text) : text;

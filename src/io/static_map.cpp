@@ -101,7 +101,7 @@ void StaticMap::takeBack(const TileIndex& index, Tile& tile) const {
     stream.read(reinterpret_cast<char*>(&key), sizeof(key));
     stream.read(reinterpret_cast<char*>(read.sum.data()), 3 * sizeof(float));
     stream.read(reinterpret_cast<char*>(&read.count), sizeof(read.count));
-    if (!stream) throw DataError(fileOf(index).string() + ": what was put away here is gone");
+    if (!stream) throw DataError(fileOf(index).string() + ": voxels that were put away here are gone");
     Mean& mean = tile[key];
     mean.sum += read.sum;
     mean.count += read.count;

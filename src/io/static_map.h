@@ -1,4 +1,4 @@
-// A map of static echoes: one point a voxel, in bounded memory, as a PCD file.
+// A map of static echoes: one point per voxel, in bounded memory, as a PCD file.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ class StaticMap {
   /// A point of the odometry frame [m], at most 200 km from the first one at 0.2 m voxels.
   void add(const Eigen::Vector3d& in_odom);
 
-  /// Keeps to the limit; call once a scan. Throws DataError where a file cannot be written.
+  /// Keeps to the limit; call once per scan. Throws DataError where a file cannot be written.
   void settle(const Eigen::Vector3d& vehicle);
 
   /// Writes x, y, z from origin() as binary float32, whole or not at all; the map is empty then. Returns how many

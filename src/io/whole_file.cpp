@@ -12,7 +12,7 @@ WholeFile::WholeFile(fs::path file)
       stream_(temporary_, std::ios::binary) {}
 
 WholeFile::~WholeFile() {
-  std::error_code ignored;  // after commit() there is none
+  std::error_code ignored;  // after commit() there is no such file
   fs::remove(temporary_, ignored);
 }
 

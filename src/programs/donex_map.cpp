@@ -142,7 +142,7 @@ int main(int argc, char** argv) {
   CLI::App app("Builds a map (PCD) of the static echoes of a drive, with any method.", "donex_map");
   donex::Arguments arguments;
   app.add_option("IN", arguments.in, "a .bag, or a sequence directory")->required();
-  app.add_option("OUT.pcd", arguments.out, "x, y, z in the odometry frame, one point a voxel")->required();
+  app.add_option("OUT.pcd", arguments.out, "x, y, z in the odometry frame, one point per voxel")->required();
   app.add_option("--map-voxel", arguments.map_voxel, "edge of a voxel of the map [m], by default 0.1")
       ->check(CLI::Range(0.01, 10.0));
   app.add_option("--range", arguments.range, "echoes within this range of the sensor [m], by default 50")

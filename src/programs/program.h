@@ -49,7 +49,7 @@ class ConfigOptions {
   std::string file_;
   std::string method_;
   std::string voxel_size_;
-  std::string settings_;  ///< a line each
+  std::string settings_;  ///< one line each
 };
 
 /// A bar on stderr; says nothing where that is no terminal.

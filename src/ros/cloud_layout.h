@@ -45,7 +45,7 @@ struct TimeField {
 
 /// A readable cloud: every offset below lies within the data, for every echo.
 struct CloudLayout {
-  std::size_t width = 0;       ///< echoes a row
+  std::size_t width = 0;       ///< echoes per row
   std::size_t height = 0;      ///< rows; 1 when not organised
   std::size_t point_step = 0;  ///< [bytes]
   std::size_t row_step = 0;    ///< [bytes], at least width * point_step

@@ -19,7 +19,7 @@ void parseEchoes(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layou
 
 /// Each echo's own time.
 struct EchoTimes {
-  std::vector<float> after_stamp;  ///< after the cloud's stamp [s], one an echo; negative before it
+  std::vector<float> after_stamp;  ///< after the cloud's stamp [s], one per echo; negative before it
   double first = 0.0, last = 0.0;  ///< the span of the times of echoes with finite coordinates [s]
   std::string problem;             ///< why the cloud's times cannot be used; empty where they can, or where it has none
 

@@ -1,4 +1,4 @@
-// An octree of what the sensor saw: static echoes in, a map without moving things out. A consumer of ~static_points.
+// An octree of what the sensor saw: static echoes in, a map without moving objects out. A consumer of ~static_points.
 #pragma once
 
 #include <memory>

@@ -12,8 +12,8 @@
 
 namespace donex {
 
-/// Sets what `values` (a map of names to values) holds. Returns every fault, a sentence each: unknown names,
-/// wrong types, values that are none of the enumeration, and Config::faults() of the outcome.
+/// Sets what `values` (a map of names to values) holds. Returns every fault, one sentence each: unknown names,
+/// wrong types, values that are not in the enumeration, and Config::faults() of the outcome.
 std::vector<std::string> applyParameters(const XmlRpc::XmlRpcValue& values, Config& config);
 
 /// The configuration of a node from its private namespace over the defaults.

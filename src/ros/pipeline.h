@@ -34,10 +34,10 @@ struct LabeledScan {
 /// What the pipeline tells its owner; every function must be set.
 struct PipelineEvents {
   std::function<void(const LabeledScan&)> labeled;
-  std::function<void(DropReason, const std::string& text)> dropped;       ///< once a dropped cloud
-  std::function<void(OdometryRefusal, const std::string& text)> refused;  ///< once a refused odometry
+  std::function<void(DropReason, const std::string& text)> dropped;       ///< once per dropped cloud
+  std::function<void(OdometryRefusal, const std::string& text)> refused;  ///< once per refused odometry
   std::function<void(const std::string& text)> forgotten;                 ///< the grid is empty again, and why
-  std::function<void(const std::string& text)> strange_times;             ///< once a cloud that cannot be de-skewed
+  std::function<void(const std::string& text)> strange_times;             ///< once per cloud that cannot be de-skewed
 };
 
 struct PipelineCounts {

@@ -1,4 +1,4 @@
-// What things look like: solids around an origin on the ground, x forward.
+// What objects look like: solids around an origin on the ground, x forward.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace donex::simulation {
 
-/// SemanticKITTI classes of a thing at rest and in motion.
+/// SemanticKITTI classes of an object at rest and in motion.
 struct ThingClass {
   std::uint32_t at_rest;
   std::uint32_t moving;

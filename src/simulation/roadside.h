@@ -5,7 +5,7 @@
 
 namespace donex::simulation {
 
-/// How a side of a road is furnished; a chance of 0 leaves a thing out.
+/// How a side of a road is furnished; a chance of 0 leaves an item out.
 struct Roadside {
   double half_width = 5.3;         ///< of the road [m]
   double pavement = 2.5;           ///< [m]

@@ -8,9 +8,10 @@
 namespace donex::simulation {
 
 struct SensorModel {
-  std::vector<float> slopes;              ///< tangents of the beams' elevations, rising; one a ring
-  std::vector<Eigen::Vector2d> headings;  ///< unit, sensor axes; one a column. Begins at the rear, clockwise from above
-  float min_range = 0.9f;                 ///< [m]
+  std::vector<float> slopes;  ///< tangents of the beams' elevations, rising; one per ring
+  std::vector<Eigen::Vector2d>
+      headings;            ///< unit, sensor axes; one per column. Begins at the rear, clockwise from above
+  float min_range = 0.9f;  ///< [m]
 
   int beams() const { return static_cast<int>(slopes.size()); }
   int columns() const { return static_cast<int>(headings.size()); }  ///< firings a turn

@@ -23,7 +23,7 @@ struct SimulatedEcho {
 struct SimulatedScan {
   double stamp = 0.0;
   std::vector<SimulatedEcho> echoes;
-  /// One an echo, as SemanticKITTI has them: lower 16 bits the class, upper 16 the moving thing's number.
+  /// One per echo, as SemanticKITTI has them: lower 16 bits the class, upper 16 the moving object's number.
   /// 252 car or van, 253 cyclist, 254 person, 257 bus, 258 lorry: faster than kMovingSpeed by itself.
   /// 0, not judged: slower than that now, but not for all of the last kSettleTime.
   /// Anything else is static: 10 car, 30 person, 40 road, 48 pavement, 50 building, 70 vegetation, 80 pole ...
@@ -37,7 +37,7 @@ struct SimulatedScan {
   Scan coreScan() const;
 };
 
-/// A thing that can move by itself, at one moment.
+/// An object that can move by itself, at one moment.
 struct MoverTruth {
   std::uint32_t label = 0;                                          ///< of its echoes
   Eigen::Isometry3d odom_from_box = Eigen::Isometry3d::Identity();  ///< x forward, at the box' centre
@@ -45,7 +45,7 @@ struct MoverTruth {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();               ///< odometry frame [m/s]
 };
 
-inline constexpr double kMovingSpeed = 0.3;  ///< a thing faster than this moves [m/s]
+inline constexpr double kMovingSpeed = 0.3;  ///< an object faster than this moves [m/s]
 inline constexpr double kSettleTime = 1.0;   ///< slower for this long: it stands [s]
 
 /// intersection street motorway bend, and the hard cases; in the order of the documentation.
@@ -53,7 +53,7 @@ const std::vector<std::string>& sceneNames();
 bool isScene(const std::string& name);
 /// The message for a scene that isn't there: names those that are.
 std::string unknownScene(const std::string& name);
-/// Everything that is wrong with a drive, a line each: unknown scene, options; empty when there is nothing.
+/// Every fault of a drive, one line each: unknown scene, options; empty when the drive is possible.
 std::string faultsOf(const std::string& scene, const SimulatorOptions& options);
 /// One sentence. Throws std::invalid_argument for an unknown name.
 std::string sceneMeaning(const std::string& scene);
@@ -73,7 +73,7 @@ class Simulator {
   /// True motion at any moment of the scene [s].
   Eigen::Isometry3d odomFromBase(double stamp) const;
   Eigen::Isometry3d baseFromSensor() const;
-  /// The moving things; `number` counts from 0, one less than in the labels.
+  /// The moving objects; `number` counts from 0, one less than in the labels.
   std::size_t moverCount() const;
   MoverTruth mover(std::size_t number, double stamp) const;
 

@@ -39,7 +39,7 @@ struct SimulatorOptions {
   double max_range = 120.0;  // [m]
   OdometryOptions odometry;
 
-  /// Every fault, a sentence each; empty when the options can be used.
+  /// Every fault, one sentence each; empty when the options can be used.
   std::vector<std::string> faults() const;
 
   /// Scans in the whole duration; 0: endless.
@@ -48,7 +48,7 @@ struct SimulatorOptions {
 
 struct OptionInfo {
   const char* name;
-  const char* unit;     ///< empty where there is none
+  const char* unit;     ///< empty where it has no unit
   const char* meaning;  ///< one sentence
 };
 

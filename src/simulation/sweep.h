@@ -64,7 +64,7 @@ class Sweep {
   std::vector<Eigen::Isometry3d> knots_;              // sensor poses in the scene, evenly over the turn
   Eigen::Vector3d anchor_ = Eigen::Vector3d::Zero();  // targets are kept relative to it
   std::vector<Target> targets_;
-  std::vector<Surface> surfaces_;  // one a target
+  std::vector<Surface> surfaces_;  // one per target
   std::vector<Hit> hits_;
   std::vector<float> ground_;
   std::vector<SimulatedEcho>* echoes_ = nullptr;

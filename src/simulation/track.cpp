@@ -31,7 +31,7 @@ Track trackOf(const Course& course, const Eigen::Vector2d& half) {
 
 bool stayClear(const Track& a, const Track& b, double horizon) {
   constexpr double kGap = 1.0;   // [m]
-  constexpr double kFar = 22.0;  // no two things that far apart touch [m]
+  constexpr double kFar = 22.0;  // no two objects that far apart touch [m]
   const auto steps = static_cast<std::size_t>((std::min(horizon, kTrackEnd) - kTrackBegin) / kTrackStep);
   for (std::size_t i = 0; i < steps; ++i) {
     const bool far = (a.places[i].position - b.places[i].position).squaredNorm() > kFar * kFar;

@@ -103,7 +103,7 @@ inline std::vector<std::uint8_t> dynamicOf(const sensor_msgs::PointCloud2& cloud
   return labels;
 }
 
-using ScanLabels = std::vector<std::vector<std::uint8_t>>;  // one an echo, scan by scan
+using ScanLabels = std::vector<std::vector<std::uint8_t>>;  // one per echo, scan by scan
 
 inline long countDynamic(const ScanLabels& labels) {
   long count = 0;

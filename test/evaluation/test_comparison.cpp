@@ -23,7 +23,7 @@ constexpr std::uint32_t label(std::uint32_t kind, std::uint32_t instance) { retu
 TEST(ObjectSpeeds, AreThoseOfTheCentresOverGround) {
   ObjectSpeeds speeds;
   for (int k = 0; k <= 10; ++k) {
-    const float x = static_cast<float>(k);  // the vehicle does 10 m/s, the thing stays 10 m ahead of it
+    const float x = static_cast<float>(k);  // the vehicle does 10 m/s, the object stays 10 m ahead of it
     const Pose pose{{x, 0.0, 0.0}, Eigen::Quaterniond::Identity()};
     const Eigen::Vector3f left_behind(20.0F - x, 5.0F, 0.0F);
     speeds.add(0.1 * k, pose, {{9, 0, 0}, {11, 0, 0}, left_behind, {1, 1, 1}},

@@ -145,7 +145,7 @@ TEST(Phantoms, AreCountedOfWhatIsJudged) {
   EXPECT_TRUE(std::isnan(evaluation.phantomsPerScan()));
   evaluation.add(4, echoes, truth, prediction);  // warm-up
   evaluation.add(5, echoes, truth, prediction);
-  prediction[0] = 9;  // four echoes are none
+  prediction[0] = 9;  // four false echoes are too few
   evaluation.add(6, echoes, truth, prediction);
   EXPECT_EQ(evaluation.phantoms(), 1U);
   EXPECT_DOUBLE_EQ(evaluation.phantomsPerScan(), 0.5);

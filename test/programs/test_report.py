@@ -14,7 +14,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 
 
 def write_drive(directory, random):
-    """Twelve scans from a vehicle at 5 m/s: ground, walls, a few moving things with instances, unknown echoes."""
+    """Twelve scans from a vehicle at 5 m/s: ground, walls, a few moving objects with instances, unknown echoes."""
     for folder in ("velodyne", "labels"):
         (directory / folder).mkdir(parents=True)
     poses = []

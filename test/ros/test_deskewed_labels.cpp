@@ -105,7 +105,7 @@ struct Drive {
   }
 
   testing::Score score;
-  int moving = 0;  ///< echoes of moving things
+  int moving = 0;  ///< echoes of moving objects
 
  private:
   PipelineEvents events() {
@@ -148,7 +148,7 @@ TEST(DeskewedLabels, areThoseOfUndistortedScans) {
   EXPECT_GT(undistorted.moving, 5000) << "echoes to be right about";
   EXPECT_GT(undistorted.score.iou(), 0.7);
   EXPECT_NEAR(deskewed.score.iou(), undistorted.score.iou(), 0.01);
-  EXPECT_LT(distorted.score.iou(), deskewed.score.iou() - 0.05) << "there is something to undo";
+  EXPECT_LT(distorted.score.iou(), deskewed.score.iou() - 0.05) << "the distortion matters";
 }
 
 }  // namespace

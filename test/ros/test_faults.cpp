@@ -79,7 +79,7 @@ TEST_F(Faults, odometryIsNotANumber) {
   }
   for (int wait = 0; wait < 8; ++wait) advance();
   recover();
-  conclude("odometry with NaN, quaternions that are none, for 1 s");
+  conclude("odometry with NaN and invalid quaternions for 1 s");
 }
 
 TEST_F(Faults, mountingComesLate) {

@@ -83,7 +83,7 @@ Voxel voxelOf(const Eigen::Vector3d& place) {
   return {index.x(), index.y(), index.z()};
 }
 
-/// The live drive's scans with their truth: where only moving things were in them.
+/// The live drive's scans with their truth: where only moving objects were in them.
 class LiveDrive {
  public:
   LiveDrive() { clouds_ = nh_.subscribe("/donex/labeled_points", 200, &LiveDrive::onCloud, this); }
@@ -91,7 +91,7 @@ class LiveDrive {
   std::size_t scans() const { return scans_; }
   ros::Time newest() const { return newest_; }
 
-  /// Voxels that a moving thing hit, and nothing that stands hit them or their neighbours.
+  /// Voxels that a moving object hit, and nothing that stands hit them or their neighbours.
   std::vector<Voxel> movedThrough() const {
     std::vector<Voxel> alone;
     for (const Voxel& voxel : moving_) {

@@ -42,7 +42,7 @@ class Maps {
 
   OctomapBuilder of_static{kCoarse}, of_all{kCoarse};
 
-  /// Occupied voxels that a moving thing hit and nothing that stands: who walks along a wall shares voxels with it.
+  /// Occupied voxels that a moving object hit and nothing that stands: who walks along a wall shares voxels with it.
   std::size_t ghostsIn(const OctomapBuilder& map) const {
     std::size_t ghosts = 0;
     for (const Voxel& voxel : moving_) {
@@ -88,7 +88,7 @@ class Maps {
 TEST(OctomapBuilder, movingThingsHardlyGetIn) {
   const Maps maps;
   const std::size_t of_all = maps.ghostsIn(maps.of_all), of_static = maps.ghostsIn(maps.of_static);
-  std::cout << "voxels that only moving things hit, occupied in a map of all echoes: " << of_all
+  std::cout << "voxels that only moving objects hit, occupied in a map of all echoes: " << of_all
             << ", of static echoes: " << of_static << '\n';
   EXPECT_GT(of_all, 40U) << "a map of all echoes holds who came by";
   EXPECT_LT(10 * of_static, of_all);

@@ -27,7 +27,7 @@ inline bool inWindow(const Voxel& v, const GridWindow& window) {
 /// The labels of a scan: 1 where the echo is new.
 using Labels = std::vector<std::uint8_t>;
 
-/// A remembered thing that moves with the world between two scans of a resampled grid.
+/// A remembered content that moves with the world between two scans of a resampled grid.
 struct Content3d {
   Eigen::Vector3d in_odom;
   Voxel voxel;

@@ -1,4 +1,4 @@
-// Scans made to be awkward: faces, axes, duplicates, negative coordinates, echoes that are none.
+// Scans made to be awkward: faces, axes, duplicates, negative coordinates, invalid echoes.
 #pragma once
 
 #include <cmath>

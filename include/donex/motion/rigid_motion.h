@@ -16,14 +16,14 @@ enum class MotionFault {
   kNotYetCovered,      ///< further beyond the newest odometry than may be extrapolated
   kGapTooLong,         ///< the odometry samples on both sides are too far apart
   kNonFinite,          ///< NaN or infinity in the input
-  kNonUnitQuaternion,  ///< a rotation that is none
-  kSizeMismatch,       ///< as many times as echoes are needed
+  kNonUnitQuaternion,  ///< an invalid rotation
+  kSizeMismatch,       ///< the numbers of times and echoes differ
 };
 
 /// The fault in words, fit for a log message ("no odometry yet", ...).
 const char* describe(MotionFault fault);
 
-/// A value, or the reason why there is none. Never a stand-in value.
+/// A value, or the reason why it is missing. Never a stand-in value.
 template <class T>
 class MotionResult {
  public:

@@ -23,7 +23,7 @@ enum class Standing : std::uint8_t {
   kSkirt,  ///< near the ground: belongs to what stands right above it, connects nothing
 };
 
-/// One entry an echo. Points are the echoes in the grid's window, z up [m].
+/// One entry per echo. Points are the echoes in the grid's window, z up [m].
 struct JudgedScan {
   double stamp = 0.0;  ///< [s]
   Eigen::Isometry3d odom_from_points = Eigen::Isometry3d::Identity();

@@ -74,8 +74,8 @@ class Grid2d {
   CellLayout layout_;
   std::vector<Cell> cells_;  ///< by slot; one more for the echoes outside
   Workers workers_;
-  std::vector<Part> parts_;                     ///< one a thread
-  std::vector<Content> contents_;               ///< resample: one a cell with a range
+  std::vector<Part> parts_;                     ///< one per thread
+  std::vector<Content> contents_;               ///< resample: one per cell with a range
   std::vector<std::uint32_t> content_of_cell_;  ///< resample: while ranges are moved
 };
 

@@ -53,7 +53,7 @@ class Grid3d {
   static constexpr std::size_t kSlotsAUsedBrick = 8;
 
   struct Brick {
-    std::uint64_t remembered = 0, hit = 0;  ///< a bit a voxel
+    std::uint64_t remembered = 0, hit = 0;  ///< a bit per voxel
   };
   /// A brick that holds anything.
   struct Used {
@@ -98,7 +98,7 @@ class Grid3d {
   std::vector<Used> used_;         ///< each once
   std::vector<std::size_t> kept_;  ///< how many of each stretch of used_ stay
   Workers workers_;
-  std::vector<Part> parts_;  ///< one a thread
+  std::vector<Part> parts_;  ///< one per thread
   RayIndex rays_;
   std::vector<Content> contents_;  ///< resample: one a remembered voxel
 };

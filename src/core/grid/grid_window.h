@@ -26,9 +26,9 @@ double reachOf(const Region& region);
 /// A scan in the grid: what every method works on. All of it is in the grid's window, in voxel edge lengths.
 struct GridScan {
   Eigen::Vector3f origin = Eigen::Vector3f::Zero();  ///< sensor
-  /// One an echo, NaN where the echo is none (non-finite, or too far).
+  /// One per echo, NaN where the echo is none (non-finite, or too far).
   std::vector<Eigen::Vector3f> echoes;
-  /// One an echo: inside the region of interest and the window, the echo hits the grid. Others only see through it.
+  /// One per echo: inside the region of interest and the window, the echo hits the grid. Others only see through it.
   std::vector<std::uint8_t> inside;
 };
 
@@ -95,7 +95,7 @@ bool isBefore(const Index3& a, const Index3& b);
 
 /// Centres of voxels of the window, each once, odometry frame [m].
 std::vector<Eigen::Vector3f> cellCenters(const GridWindow& window, std::vector<Index3> voxels);
-/// Centres of the voxels that hold a marked echo, each once, odometry frame [m]. `marked`: one an echo.
+/// Centres of the voxels that hold a marked echo, each once, odometry frame [m]. `marked`: one per echo.
 std::vector<Eigen::Vector3f> cellCenters(const GridWindow& window, const GridScan& scan,
                                          const std::vector<std::uint8_t>& marked);
 

@@ -39,7 +39,7 @@ std::vector<Case> cases() {
 }
 
 constexpr int kScans = 25;
-constexpr int kEchoes = 600;  // three blocks: one a thread at most
+constexpr int kEchoes = 600;  // three blocks: one per thread at most
 
 void expectSameMemory(const Grid3d& grid, const oracle::Donex3d& oracle) {
   oracle::Voxels voxels;
