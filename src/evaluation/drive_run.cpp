@@ -4,7 +4,8 @@
 
 namespace donex {
 
-DriveRun::DriveRun(const Config& config) {
+DriveRun::DriveRun(const Config& config, DriveOdometry odometry) {
+  if (odometry == DriveOdometry::kLidar) odometry_.emplace();
   if (needsWholeDrive(config.method)) {
     whole_ = makeWholeDriveDetector(config);
   } else {
@@ -20,6 +21,26 @@ void DriveRun::judge(const Scan& scan, std::size_t index) {
   times_[index] += wallTime() - wall;
 }
 
+/// A drive that is shown again has its poses from the first time.
+void DriveRun::locate(Scan& scan, std::size_t index) {
+  if (index == tracked_.size()) {
+    const double start = cpuTime();
+    tracked_.push_back(odometry_->locate(scan.stamp, scan.echoes));
+    odometry_times_.push_back(cpuTime() - start);
+    const bool is_another_track = index > 0 && tracked_.back().is_new_track;
+    if (is_another_track && live_ != nullptr) live_->reset();
+  }
+  scan.odom_from_base = tracked_[index].odom_from_sensor;
+}
+
+void DriveRun::learn(const Scan& scan, std::size_t index) {
+  const bool is_newest = live_ != nullptr && index + 1 == tracked_.size();
+  if (!is_newest) return;
+  const double start = cpuTime();
+  odometry_->learn(scan.echoes, labels_.dynamic);
+  odometry_times_[index] += cpuTime() - start;
+}
+
 void DriveRun::run(const SequenceReader& sequence, std::size_t scans, const Sink& sink,
                    const std::function<void()>& progress) {
   times_.assign(scans, 0.0);
@@ -27,8 +48,10 @@ void DriveRun::run(const SequenceReader& sequence, std::size_t scans, const Sink
   do {
     const bool counts = whole_ == nullptr || whole_->isLastPass();
     for (std::size_t i = 0; i < scans; ++i) {
-      const Scan scan = toScan(sequence.scan(i));
+      Scan scan = toScan(sequence.scan(i));
+      if (odometry_) locate(scan, i);
       judge(scan, i);
+      if (odometry_) learn(scan, i);
       if (counts) sink(i, scan, labels_);
       progress();
     }

@@ -3,17 +3,25 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "core/motion/lidar_odometry.h"
 #include "donex/whole_drive.h"
 #include "io/sequence.h"
 
 namespace donex {
 
+/// Whose poses a drive is judged with.
+enum class DriveOdometry {
+  kGiven,  ///< the sequence's
+  kLidar,  ///< found from its scans alone
+};
+
 class DriveRun {
  public:
   /// Throws std::invalid_argument with every fault of the configuration.
-  explicit DriveRun(const Config& config);
+  explicit DriveRun(const Config& config, DriveOdometry odometry = DriveOdometry::kGiven);
 
   /// Takes the labels of a scan; `index` is the sequence's.
   using Sink = std::function<void(std::size_t index, const Scan& scan, const EchoLabels& labels)>;
@@ -27,6 +35,10 @@ class DriveRun {
   const std::vector<double>& times() const { return times_; }
   const std::vector<double>& cpuTimes() const { return cpu_times_; }
 
+  /// With DriveOdometry::kLidar where each scan was found, and the CPU time that took [s]; else empty.
+  const std::vector<TrackedScan>& tracked() const { return tracked_; }
+  const std::vector<double>& odometryTimes() const { return odometry_times_; }
+
   /// Bytes held by the method's own memory after the last scan.
   std::size_t memoryBytes() const { return detector().memoryBytes(); }
 
@@ -34,10 +46,15 @@ class DriveRun {
   Detector& detector() { return whole_ == nullptr ? *live_ : *whole_; }
   const Detector& detector() const { return whole_ == nullptr ? *live_ : *whole_; }
   void judge(const Scan& scan, std::size_t index);
+  void locate(Scan& scan, std::size_t index);
+  void learn(const Scan& scan, std::size_t index);
 
   std::unique_ptr<Detector> live_;
   std::unique_ptr<WholeDriveDetector> whole_;
   EchoLabels labels_;
+  std::optional<LidarOdometry> odometry_;
+  std::vector<TrackedScan> tracked_;
+  std::vector<double> odometry_times_;
   std::vector<double> times_, cpu_times_;
 };
 

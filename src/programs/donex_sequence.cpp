@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include "core/pi.h"
 #include "core/timing.h"
 #include "donex/memory_bound.h"
 #include "evaluation/comparison.h"
+#include "evaluation/drift.h"
 #include "io/sequence.h"
 #include "io/whole_file.h"
 #include "programs/program.h"
@@ -19,6 +21,7 @@ struct Arguments {
   std::string sequence;
   std::string out;
   std::size_t frames = 0;  ///< 0: all
+  std::string odometry = "given";
 };
 
 struct Run {
@@ -71,14 +74,35 @@ void report(const Run& run, const Config& config, const DriveRun& drive, bool ha
   }
 }
 
+/// Poses of the scans against those that the sequence comes with.
+void reportOdometry(const SequenceReader& sequence, const DriveRun& drive) {
+  constexpr double kPiece = 10.0;  // [m]
+  std::vector<Eigen::Isometry3d> found, given;
+  std::size_t degenerate = 0, lost = 0;
+  for (const TrackedScan& tracked : drive.tracked()) {
+    given.push_back(sequence.pose(found.size()).isometry());
+    found.push_back(tracked.odom_from_sensor);
+    degenerate += tracked.status == TrackingStatus::kDegenerate ? 1U : 0U;
+    lost += tracked.status == TrackingStatus::kLost ? 1U : 0U;
+  }
+  if (found.empty()) return;
+  const Drift drift = driftOver(found, given, kPiece);
+  fmt::print("odometry from the scans: {} degenerate, {} lost; CPU time median {:.2f} ms, p99 {:.2f} ms\n", degenerate,
+             lost, 1e3 * quantile(drive.odometryTimes(), 0.5), 1e3 * quantile(drive.odometryTimes(), 0.99));
+  if (drift.pieces == 0) return;
+  fmt::print("its drift against poses.txt over {:.0f} m: {:.2f} %, {:.3f} degrees\n", drift.length,
+             100.0 * drift.translation, drift.rotation * 180.0 / kPi);
+}
+
 void run(const CLI::App& app, const Arguments& arguments, const ConfigOptions& options) {
   const Config config = options.config();
   const SequenceReader sequence = openSequence(app, arguments.sequence);
   prepareOutput(arguments);
   const std::size_t scans = scansOf(sequence, arguments.frames);
-  DriveRun drive(config);
+  DriveRun drive(config, arguments.odometry == "lidar" ? DriveOdometry::kLidar : DriveOdometry::kGiven);
   const Run run = runSequence(sequence, scans, drive, arguments.out);
   report(run, config, drive, sequence.hasLabels());
+  reportOdometry(sequence, drive);
   if (!arguments.out.empty()) writeRunFigures(arguments.out, figuresOf(drive, config));
 }
 
@@ -91,6 +115,10 @@ int main(int argc, char** argv) {
   app.add_option("SEQ_DIR", arguments.sequence, "velodyne/NNNNNN.bin, poses.txt, times.txt, labels/")->required();
   app.add_option("--out", arguments.out, "directory for NNNNNN.label (251 moving, 9 static); without it only figures");
   app.add_option("--frames", arguments.frames, "only the first N scans")->check(CLI::PositiveNumber);
+  app.add_option("--odometry", arguments.odometry,
+                 "given: the poses of poses.txt; lidar: found from the scans, and compared with those; by default " +
+                     arguments.odometry)
+      ->check(CLI::IsMember({"given", "lidar"}));
   const donex::ConfigOptions options(app);
   return donex::runProgram(app, argc, argv, [&] { donex::run(app, arguments, options); });
 }

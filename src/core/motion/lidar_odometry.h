@@ -1,0 +1,117 @@
+// Ego motion from the scans alone: each is registered against a map of what stood in the scans before.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "core/motion/echo_thinning.h"
+#include "core/motion/gaussian_map.h"
+#include "core/motion/scan_registration.h"
+
+namespace donex {
+
+enum class TrackingStatus {
+  kStarting,    ///< the first scan of a track, and the second, which has no velocity to start from
+  kTracking,    ///< the pose is determined
+  kDegenerate,  ///< the scan leaves directions open, as a tunnel its axis: there the pose is predicted
+  kLost,        ///< the pose is predicted altogether
+};
+
+/// "starting", "tracking", "degenerate", "lost".
+const char* describe(TrackingStatus status);
+
+/// Where one scan was measured.
+struct TrackedScan {
+  Eigen::Isometry3d odom_from_sensor = Eigen::Isometry3d::Identity();
+  TrackingStatus status = TrackingStatus::kStarting;
+  bool is_new_track = true;  ///< poses before and from here on cannot be compared
+  int undetermined = 0;      ///< directions left open, of six
+  double fitting = 0.0;      ///< share of the echoes on known surfaces that fit them
+  double least_information = 0.0;
+};
+
+/// LiDAR odometry. Predicts by constant velocity of its own and knows no other odometry. Scans are registered as they
+/// were measured: at a steady motion all are distorted alike, and de-skewing by its poses comes after. Memory and time
+/// a scan are bounded. Not thread-safe.
+class LidarOdometry {
+ public:
+  struct Options {
+    GaussianMap::Options map;
+    RegistrationOptions registration;
+    float farthest = 100.0F;          ///< echoes beyond are left out [m]
+    float nearest_share = 0.25F;      ///< nearer than this share of the median range is the vehicle itself, within
+    float nearest_least = 0.4F;       ///< this [m]
+    float nearest_most = 2.5F;        ///< and this [m]
+    float map_edge = 0.2F;            ///< one echo in each such voxel goes into the map [m]
+    std::size_t least_source = 1000;  ///< echoes to register: the largest of the edges that leaves so many
+    std::vector<float> source_edges{1.0F, 0.7F, 0.5F, 0.35F, 0.25F, 0.2F};  ///< falling [m]
+    std::size_t least_echoes = 50;                                          ///< fewer are no scan to register
+    double first_gate = 2.0;     ///< how far a prediction may be off at the start [m]
+    double least_gate = 0.3;     ///< and when all goes well [m]
+    double search_speed = 40.0;  ///< at the start a vehicle is no faster [m/s]
+    double search_reach = 4.0;   ///< and has not come farther since the first scan [m]
+    double search_step = 0.5;    ///< between starts that are tried [m]
+    std::vector<double> search_yaws{-0.12, -0.08, -0.05, -0.025, 0.025, 0.05, 0.08, 0.12};  ///< tried as well [rad]
+    double better_fitness = 1.02;     ///< what is found from elsewhere has to fit better by this factor
+    double usual_share = 0.93;        ///< with a smaller share of the usual fitting echoes other starts are tried
+    double sound_share = 0.7;         ///< a smaller share of the usual fitting echoes is a loss
+    double least_fitting = 0.4;       ///< a smaller share of fitting echoes is a loss
+    double least_matched = 0.1;       ///< a smaller share of echoes on known surfaces is a loss
+    double most_acceleration = 40.0;  ///< no vehicle brakes or turns in as hard: a loss [m/s^2]
+    double most_turn = 0.35;          ///< nor turns by so much more than predicted between two scans [rad]
+    int most_lost = 5;                ///< scans; after that a new track begins
+    double longest_prediction = 1.0;  ///< then a vehicle is taken to stand [s]
+  };
+
+  LidarOdometry() : LidarOdometry(Options()) {}
+  explicit LidarOdometry(const Options& options);
+
+  /// Registers a scan, of echoes in the sensor frame [m]; non-finite ones are left out. A stamp [s] that is not later
+  /// than the last one is taken for the same moment.
+  const TrackedScan& locate(double stamp, const std::vector<Eigen::Vector3f>& echoes);
+
+  /// What moves in the scan located last, 1 for each echo that does: the map is to hold what stands. Optional; without
+  /// it the next scan finds all echoes in the map.
+  void learn(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& dynamic);
+
+  void reset();
+  std::size_t memoryBytes() const;
+
+ private:
+  void follow(double stamp);
+  void select(const std::vector<Eigen::Vector3f>& echoes);
+  void findNear(const std::vector<Eigen::Vector3f>& echoes);
+  Eigen::Isometry3d predicted(double stamp) const;
+  Registration registered(const Eigen::Isometry3d& prediction, double elapsed);
+  bool isUsual(const Registration& registration) const;
+  double fitnessOf(const Registration& registration);
+  Eigen::Isometry3d searched(const Eigen::Isometry3d& prediction, double reach);
+  bool isSound(const Registration& registration, const Eigen::Isometry3d& prediction, double elapsed) const;
+  void startTrack(double stamp, const Eigen::Isometry3d& pose);
+  void accept(const Registration& registration, const Eigen::Isometry3d& prediction, double stamp);
+  void lose(const Eigen::Isometry3d& prediction, double stamp);
+  void adaptGate(const Eigen::Isometry3d& prediction);
+  void keep();
+
+  Options options_;
+  GaussianMap map_;
+  ScanRegistration registration_;
+  EchoThinning thinning_;
+  TrackedScan last_;
+  Eigen::Isometry3d step_ = Eigen::Isometry3d::Identity();  // the last motion between two scans, in sensor axes
+  double step_time_ = 0.0;                                  // [s]; 0 where none is known
+  double last_stamp_ = 0.0;
+  double squared_error_ = 0.0;  // of predictions, fading [m^2]
+  double usual_fitting_ = 0.0;  // share of fitting echoes, fading
+  int lost_ = 0;                // scans in a row
+  bool has_track_ = false;
+  float nearest_ = 0.0F;  // [m]
+  // Of the scan in hand.
+  std::vector<float> ranges_;
+  std::vector<std::uint32_t> usable_, for_map_, picked_;
+  std::vector<Eigen::Vector3f> source_, to_keep_;
+};
+
+}  // namespace donex

@@ -1,0 +1,176 @@
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "core/motion/lidar_odometry.h"
+#include "core/motion/motion_samples.h"
+#include "core/motion/surfaces.h"
+
+namespace donex {
+namespace {
+
+using testing::corridor;
+using testing::courtyard;
+using testing::distanceBetween;
+using testing::rotationBetween;
+using testing::seenFrom;
+using testing::SteadyDrive;
+using Echoes = std::vector<Eigen::Vector3f>;
+
+SteadyDrive bendingDrive() { return {{{4.0, 0.2, 0.05}, {0.02, -0.03, 0.3}}}; }
+
+TEST(LidarOdometry, FindsPosesAmongPlanesToTheRoundingOfTheEchoes) {
+  const auto world = courtyard();
+  const SteadyDrive drive = bendingDrive();
+  LidarOdometry odometry;
+  for (int i = 0; i < 8; ++i) {
+    const double stamp = 0.1 * i;
+    const auto echoes = seenFrom(drive.poseAt(stamp), world);
+    const TrackedScan& tracked = odometry.locate(stamp, echoes);
+    const bool is_known = i > 1;
+    EXPECT_EQ(tracked.status, is_known ? TrackingStatus::kTracking : TrackingStatus::kStarting) << i;
+    EXPECT_LT(distanceBetween(tracked.odom_from_sensor, drive.poseAt(stamp)), 2e-5) << i;
+    EXPECT_LT(rotationBetween(tracked.odom_from_sensor, drive.poseAt(stamp)), 2e-6) << i;
+  }
+}
+
+TEST(LidarOdometry, StartsAtSpeed) {
+  const auto world = courtyard();
+  for (const double speed : {0.0, 5.0, 12.0, 20.0, -8.0}) {
+    const SteadyDrive drive{{{speed, 0.0, 0.0}, {0.0, 0.0, 0.0}}};
+    LidarOdometry odometry;
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Isometry3d truth = drive.poseAt(0.1 * i);
+      const TrackedScan tracked = odometry.locate(0.1 * i, seenFrom(truth, world));
+      EXPECT_LT(distanceBetween(tracked.odom_from_sensor, truth), 1e-3) << speed << " m/s, scan " << i;
+    }
+  }
+}
+
+TEST(LidarOdometry, SaysWhereACorridorLeavesItOpenAndUsesTheRest) {
+  LidarOdometry odometry;
+  const auto world = corridor(-39.9, 39.9);
+  for (int i = 0; i < 6; ++i) {
+    Eigen::Isometry3d truth = Eigen::Isometry3d::Identity();
+    truth.translation().y() = 0.05 * i;  // along y the walls tell; along x the corridor moves with the sensor
+    const auto echoes = seenFrom(truth, world);
+    const TrackedScan& tracked = odometry.locate(0.1 * i, echoes);
+    if (i == 0) continue;
+    EXPECT_EQ(tracked.status, TrackingStatus::kDegenerate);
+    EXPECT_EQ(tracked.undetermined, 1);
+    EXPECT_LT(distanceBetween(tracked.odom_from_sensor, truth), 1e-3);
+  }
+}
+
+/// What sensors and drivers hand out when something is wrong.
+struct StrangeCloud {
+  std::string name;
+  Echoes echoes;
+};
+
+std::vector<StrangeCloud> strangeClouds() {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  std::vector<StrangeCloud> clouds;
+  clouds.push_back({"empty", {}});
+  clouds.push_back({"one echo", {{5.0F, 1.0F, 0.0F}}});
+  clouds.push_back({"all NaN", Echoes(5000, Eigen::Vector3f::Constant(kNan))});
+  clouds.push_back({"all in the origin", Echoes(5000, Eigen::Vector3f::Zero())});
+  clouds.push_back({"one echo many times", Echoes(5000, Eigen::Vector3f(7.0F, 2.0F, 1.0F))});
+  clouds.push_back({"huge", Echoes(5000, Eigen::Vector3f::Constant(1e30F))});
+  Echoes line, wall, noise;
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> number(-30.0F, 30.0F);
+  for (int i = 0; i < 5000; ++i) {
+    line.emplace_back(5.0F + 0.01F * static_cast<float>(i), 2.0F, 1.0F);
+    wall.emplace_back(9.0F, -10.0F + 0.2F * static_cast<float>(i % 100), 0.1F * static_cast<float>(i / 100));
+    noise.emplace_back(number(random), number(random), number(random));
+  }
+  clouds.push_back({"a line", line});
+  clouds.push_back({"a wall elsewhere", wall});
+  clouds.push_back({"noise", noise});
+  return clouds;
+}
+
+TEST(LidarOdometry, NeverJumpsByAStrangeCloudAndRecovers) {
+  const auto world = courtyard();
+  const SteadyDrive drive = bendingDrive();
+  for (const StrangeCloud& strange : strangeClouds()) {
+    LidarOdometry odometry;
+    int i = 0;
+    for (; i < 5; ++i) odometry.locate(0.1 * i, seenFrom(drive.poseAt(0.1 * i), world));
+    for (; i < 8; ++i) {
+      const TrackedScan& tracked = odometry.locate(0.1 * i, strange.echoes);
+      EXPECT_NE(tracked.status, TrackingStatus::kTracking) << strange.name;
+      EXPECT_LT(distanceBetween(tracked.odom_from_sensor, drive.poseAt(0.1 * i)), 0.15) << strange.name;
+    }
+    for (; i < 11; ++i) odometry.locate(0.1 * i, seenFrom(drive.poseAt(0.1 * i), world));
+    const TrackedScan& tracked = odometry.locate(0.1 * i, seenFrom(drive.poseAt(0.1 * i), world));
+    EXPECT_EQ(tracked.status, TrackingStatus::kTracking) << strange.name;
+    EXPECT_LT(distanceBetween(tracked.odom_from_sensor, drive.poseAt(0.1 * i)), 1e-3) << strange.name;
+  }
+}
+
+TEST(LidarOdometry, StrangeCloudsAtTheStartAreNoTrack) {
+  for (const StrangeCloud& strange : strangeClouds()) {
+    LidarOdometry odometry;
+    for (int i = 0; i < 12; ++i) {
+      const TrackedScan& tracked = odometry.locate(0.1 * i, strange.echoes);
+      EXPECT_NE(tracked.status, TrackingStatus::kTracking) << strange.name;
+      EXPECT_LT(tracked.odom_from_sensor.translation().norm(), 0.1) << strange.name;
+    }
+  }
+}
+
+TEST(LidarOdometry, BeginsANewTrackWhereTheOldOneIsLostForGood) {
+  const auto world = courtyard();
+  auto elsewhere = corridor(-8.0, 8.0);
+  for (Eigen::Vector3d& point : elsewhere)
+    point = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, 0.5, 2.0).normalized()) * point;
+  testing::addPatch({8.0, -6.0, 1.0}, {0.5, 12.0, 0.0}, {0.0, 0.0, 5.0}, 0.2, elsewhere);
+  LidarOdometry odometry;
+  for (int i = 0; i < 4; ++i) odometry.locate(0.1 * i, seenFrom(Eigen::Isometry3d::Identity(), world));
+  int new_tracks = 0;
+  TrackedScan tracked;
+  for (int i = 4; i < 20; ++i) {
+    tracked = odometry.locate(0.1 * i, seenFrom(Eigen::Isometry3d::Identity(), elsewhere));
+    new_tracks += tracked.is_new_track ? 1 : 0;
+  }
+  EXPECT_EQ(new_tracks, 1);
+  EXPECT_EQ(tracked.status, TrackingStatus::kTracking);
+}
+
+TEST(LidarOdometry, LeavesOutOfTheMapWhatMoves) {
+  const auto echoes = seenFrom(Eigen::Isometry3d::Identity(), courtyard());
+  LidarOdometry odometry;
+  odometry.locate(0.0, echoes);
+  odometry.learn(echoes, std::vector<std::uint8_t>(echoes.size(), 1));
+  EXPECT_EQ(odometry.locate(0.1, echoes).status, TrackingStatus::kLost) << "there was nothing to be found";
+  EXPECT_THROW(odometry.learn(echoes, {}), std::invalid_argument);
+}
+
+TEST(LidarOdometry, TakesStampsThatDoNotRise) {
+  const auto echoes = seenFrom(Eigen::Isometry3d::Identity(), courtyard());
+  LidarOdometry odometry;
+  for (const double stamp : {0.0, 0.1, 0.1, 0.05, 0.2, 0.3}) {
+    EXPECT_LT(odometry.locate(stamp, echoes).odom_from_sensor.translation().norm(), 1e-4) << stamp;
+  }
+}
+
+TEST(LidarOdometry, ItsMemoryIsBounded) {
+  LidarOdometry odometry;
+  std::size_t memory = 0;
+  const SteadyDrive drive{{{10.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}};
+  for (int i = 0; i < 150; ++i) {
+    const double x = 1.0 * i;
+    auto world = corridor(x - 25.0, x + 25.0);
+    odometry.locate(0.1 * i, seenFrom(drive.poseAt(0.1 * i), world));
+    if (i == 20) memory = odometry.memoryBytes();
+  }
+  EXPECT_LT(static_cast<double>(odometry.memoryBytes()), 1.05 * static_cast<double>(memory));
+}
+
+}  // namespace
+}  // namespace donex
