@@ -9,8 +9,8 @@ namespace donex::simulation {
 
 struct SensorModel {
   std::vector<float> slopes;  ///< tangents of the beams' elevations, rising; one per ring
-  std::vector<Eigen::Vector2d>
-      headings;            ///< unit, sensor axes; one per column. Begins at the rear, clockwise from above
+  /// Unit vectors in the sensor's axes, one per column; the first points backwards, then clockwise seen from above.
+  std::vector<Eigen::Vector2d> headings;
   float min_range = 0.9f;  ///< [m]
 
   int beams() const { return static_cast<int>(slopes.size()); }
