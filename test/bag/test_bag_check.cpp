@@ -60,7 +60,7 @@ class BagCheckTest : public testing::Test {
 
 constexpr std::uint32_t kHuge = 4000000000U;
 
-TEST_F(BagCheckTest, soundBagsPass) {
+TEST_F(BagCheckTest, SoundBagsPass) {
   for (const auto compression :
        {rosbag::compression::Uncompressed, rosbag::compression::LZ4, rosbag::compression::BZ2}) {
     write(compression);
@@ -69,32 +69,32 @@ TEST_F(BagCheckTest, soundBagsPass) {
   }
 }
 
-TEST_F(BagCheckTest, aBagWithoutAnIndexIsTheLibrarysToRefuse) {
+TEST_F(BagCheckTest, ABagWithoutAnIndexIsTheLibrarysToRefuse) {
   write();
   put(valueOf("index_pos", 8), std::uint64_t{0});
   test::writeText(file_, bytes_);
   EXPECT_NO_THROW(checkBag(file_));
 }
 
-TEST_F(BagCheckTest, aRecordLongerThanTheFile) {
+TEST_F(BagCheckTest, ARecordLongerThanTheFile) {
   write();
   put(indexPosition(), kHuge);
   expectFault("a connection is missing or cut off");
 }
 
-TEST_F(BagCheckTest, anIndexBeyondTheFile) {
+TEST_F(BagCheckTest, AnIndexBeyondTheFile) {
   write();
   put(valueOf("index_pos", 8), ~std::uint64_t{0});
   expectFault("a connection is missing or cut off");
 }
 
-TEST_F(BagCheckTest, moreChunksThanThereAre) {
+TEST_F(BagCheckTest, MoreChunksThanThereAre) {
   write();
   put(valueOf("chunk_count", 4), kHuge);
   expectFault("the summary of a chunk is missing or cut off");
 }
 
-TEST_F(BagCheckTest, aChunkThatClaimsGigabytes) {
+TEST_F(BagCheckTest, AChunkThatClaimsGigabytes) {
   for (const auto compression :
        {rosbag::compression::Uncompressed, rosbag::compression::LZ4, rosbag::compression::BZ2}) {
     write(compression);
@@ -106,14 +106,14 @@ TEST_F(BagCheckTest, aChunkThatClaimsGigabytes) {
   }
 }
 
-TEST_F(BagCheckTest, aMessageLongerThanItsChunk) {
+TEST_F(BagCheckTest, AMessageLongerThanItsChunk) {
   write();
   const std::size_t time = valueOf("time", 8);  // the last field of the first message; the length of its data follows
   put(time + sizeof(std::uint64_t), kHuge);
   expectFault("a chunk whose content is no record");
 }
 
-TEST_F(BagCheckTest, anIndexThatLeadsBesideAMessage) {
+TEST_F(BagCheckTest, AnIndexThatLeadsBesideAMessage) {
   write();
   const std::size_t version = valueOf("ver", 4);  // the last field of an index; length, seconds, nanoseconds follow
   const std::size_t offset = version + 4 * sizeof(std::uint32_t);
@@ -123,7 +123,7 @@ TEST_F(BagCheckTest, anIndexThatLeadsBesideAMessage) {
   expectFault("an index that leads to no message");
 }
 
-TEST_F(BagCheckTest, countsThatAreNotThere) {
+TEST_F(BagCheckTest, CountsThatAreNotThere) {
   write();
   const std::string whole = bytes_;
   put(valueOf("count", 4), kHuge);
@@ -133,13 +133,13 @@ TEST_F(BagCheckTest, countsThatAreNotThere) {
   expectFault("a summary that counts more than it holds");
 }
 
-TEST_F(BagCheckTest, aChunkSomewhereElse) {
+TEST_F(BagCheckTest, AChunkSomewhereElse) {
   write();
   put(valueOf("chunk_pos", 8), std::uint64_t{100});
   expectFault("a chunk is missing or cut off");
 }
 
-TEST_F(BagCheckTest, anyByteMayBeWrong) {
+TEST_F(BagCheckTest, AnyByteMayBeWrong) {
   for (const auto compression :
        {rosbag::compression::Uncompressed, rosbag::compression::LZ4, rosbag::compression::BZ2}) {
     write(compression);
@@ -187,7 +187,7 @@ std::string readingOf(const std::string& topic, const std::vector<std::uint32_t>
   return "no error";
 }
 
-TEST(HostileMessages, whatTheyClaimIsNotAllocated) {
+TEST(HostileMessages, WhatTheyClaimIsNotAllocated) {
   using sensor_msgs::PointCloud2;
   // seq, stamp, frame, height, width, fields
   const std::string fields = readingOf<PointCloud2>("/points", {0, 50, 0, 0, 1, 1, kHuge, 0, 0, 0});

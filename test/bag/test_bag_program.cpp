@@ -9,7 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(BagProgram, twoPartsOfOneNameAreRefused) {
+TEST(BagProgram, TwoPartsOfOneNameAreRefused) {
   const test::TemporaryDirectory directory;
   for (const char* folder : {"a", "b"}) {
     fs::create_directory(directory.path() / folder);

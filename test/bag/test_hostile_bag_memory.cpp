@@ -55,7 +55,7 @@ std::string bagOfSmallRecords(std::size_t count) {
   return begin(at + chunk.size()) + chunk + info;
 }
 
-TEST(HostileBagMemory, aChunkOfMillionsOfRecordsTakesLittleMoreThanItsContent) {
+TEST(HostileBagMemory, AChunkOfMillionsOfRecordsTakesLittleMoreThanItsContent) {
   const test::TemporaryDirectory directory;
   const fs::path file = directory.path() / "in.bag";
   constexpr std::size_t kRecords = 8000000;  // 128 MB

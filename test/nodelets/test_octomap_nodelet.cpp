@@ -23,7 +23,7 @@ class OctomapNodeletTest : public testing::Test {
   int count_ = 0;
 };
 
-TEST_F(OctomapNodeletTest, parametersOutOfRangeAreRefused) {
+TEST_F(OctomapNodeletTest, ParametersOutOfRangeAreRefused) {
   for (const double value : {0.0, -0.2, 0.001, 11.0, static_cast<double>(NAN)}) {
     EXPECT_FALSE(loadsWith("resolution", value)) << value;
   }

@@ -31,7 +31,7 @@ CloudLayout layoutOf(const PointCloud2& cloud) {
 
 boost::shared_ptr<PointCloud2> good() { return CloudBuilder().xyz().size(10).build(); }
 
-TEST(CloudLayout, missingCoordinateIsNamed) {
+TEST(CloudLayout, MissingCoordinateIsNamed) {
   for (const std::string missing : {"x", "y", "z"}) {
     CloudBuilder builder;
     for (const std::string name : {"x", "y", "z"}) builder.field(name == missing ? "w" : name, PointField::FLOAT32);
@@ -39,7 +39,7 @@ TEST(CloudLayout, missingCoordinateIsNamed) {
   }
 }
 
-TEST(CloudLayout, coordinatesMustBeFloats) {
+TEST(CloudLayout, CoordinatesMustBeFloats) {
   for (const std::uint8_t datatype : {PointField::INT8, PointField::UINT8, PointField::INT16, PointField::UINT16,
                                       PointField::INT32, PointField::UINT32}) {
     expectFault(*CloudBuilder().xyz(datatype).size(4).build(), LayoutFault::kWrongDatatype, "FLOAT32");
@@ -49,13 +49,13 @@ TEST(CloudLayout, coordinatesMustBeFloats) {
   expectFault(*unknown, LayoutFault::kWrongDatatype, "'y' has datatype 99");
 }
 
-TEST(CloudLayout, zeroPointStep) {
+TEST(CloudLayout, ZeroPointStep) {
   auto cloud = good();
   cloud->point_step = 0;
   expectFault(*cloud, LayoutFault::kZeroPointStep, "point_step is 0");
 }
 
-TEST(CloudLayout, fieldBehindItsPoint) {
+TEST(CloudLayout, FieldBehindItsPoint) {
   auto cloud = good();
   cloud->fields[2].offset = 10;
   expectFault(*cloud, LayoutFault::kFieldBeyondPoint, "'z'");
@@ -63,7 +63,7 @@ TEST(CloudLayout, fieldBehindItsPoint) {
   expectFault(*cloud, LayoutFault::kFieldBeyondPoint, "'z'");
 }
 
-TEST(CloudLayout, rowStepMustHoldARow) {
+TEST(CloudLayout, RowStepMustHoldARow) {
   auto cloud = good();
   cloud->row_step -= 1;
   expectFault(*cloud, LayoutFault::kRowTooShort, "row_step is 119");
@@ -71,7 +71,7 @@ TEST(CloudLayout, rowStepMustHoldARow) {
   expectFault(*cloud, LayoutFault::kRowTooShort, "row_step is 0");
 }
 
-TEST(CloudLayout, truncatedData) {
+TEST(CloudLayout, TruncatedData) {
   auto cloud = good();
   cloud->data.pop_back();
   expectFault(*cloud, LayoutFault::kTruncatedData, "119 bytes");
@@ -79,7 +79,7 @@ TEST(CloudLayout, truncatedData) {
   expectFault(*cloud, LayoutFault::kTruncatedData, "0 bytes");
 }
 
-TEST(CloudLayout, claimsOfBillionsAreRefusedWithoutAllocating) {
+TEST(CloudLayout, ClaimsOfBillionsAreRefusedWithoutAllocating) {
   constexpr std::uint32_t kMax = std::numeric_limits<std::uint32_t>::max();
   testing::takeLargest();
   auto wide = good();
@@ -105,7 +105,7 @@ TEST(CloudLayout, claimsOfBillionsAreRefusedWithoutAllocating) {
   EXPECT_LT(testing::takeLargest(), 10000U);
 }
 
-TEST(CloudLayout, labelledCloudMustFitToo) {
+TEST(CloudLayout, LabelledCloudMustFitToo) {
   // No echoes, but a point that cannot grow by two bytes.
   auto cloud = good();
   cloud->width = 0;
@@ -114,7 +114,7 @@ TEST(CloudLayout, labelledCloudMustFitToo) {
   expectFault(*cloud, LayoutFault::kTooLarge, "row_step");
 }
 
-TEST(CloudLayout, emptyCloudIsReadable) {
+TEST(CloudLayout, EmptyCloudIsReadable) {
   auto cloud = good();
   cloud->width = 0;
   cloud->row_step = 0;
@@ -126,7 +126,7 @@ TEST(CloudLayout, emptyCloudIsReadable) {
   expectFault(*cloud, LayoutFault::kMissingField, "'x'");
 }
 
-TEST(CloudLayout, organisedPaddedAndSwapped) {
+TEST(CloudLayout, OrganisedPaddedAndSwapped) {
   auto cloud = CloudBuilder().bigEndian().padding(3).xyz().padding(5).rowPadding(7).size(4, 3).build();
   const CloudLayout layout = layoutOf(*cloud);
   EXPECT_EQ(layout.echoes(), 12U);
@@ -136,7 +136,7 @@ TEST(CloudLayout, organisedPaddedAndSwapped) {
   EXPECT_TRUE(layout.swap_bytes);
 }
 
-TEST(CloudLayout, timesByNameAndDatatype) {
+TEST(CloudLayout, TimesByNameAndDatatype) {
   const auto timeOf = [](const std::string& name, std::uint8_t datatype) {
     return layoutOf(*CloudBuilder().xyz().field(name, datatype).size(2).build()).time;
   };
@@ -149,7 +149,7 @@ TEST(CloudLayout, timesByNameAndDatatype) {
   EXPECT_FALSE(timeOf("intensity", PointField::FLOAT32));
 }
 
-TEST(CloudLayout, timesOfAConfiguredField) {
+TEST(CloudLayout, TimesOfAConfiguredField) {
   const auto timeOf = [](std::uint8_t datatype, const CloudConfig& config) {
     const auto cloud =
         CloudBuilder().xyz().field("stamp_of_echo", datatype).field("t", PointField::UINT32).size(2).build();
@@ -169,7 +169,7 @@ TEST(CloudLayout, timesOfAConfiguredField) {
   EXPECT_FALSE(timeOf(PointField::FLOAT64, config));
 }
 
-TEST(CloudLayout, labelsComeBehindThePoint) {
+TEST(CloudLayout, LabelsComeBehindThePoint) {
   const CloudLayout packed = layoutOf(*CloudBuilder().xyz().field("ring", PointField::UINT16).size(2).build());
   EXPECT_EQ(packed.dynamic_offset, 14U);
   EXPECT_EQ(packed.observed_offset, 15U);
@@ -180,7 +180,7 @@ TEST(CloudLayout, labelsComeBehindThePoint) {
   EXPECT_EQ(doubles.labeled_point_step, 32U) << "doubles stay aligned";
 }
 
-TEST(CloudLayout, labelsThatAreThereAlreadyAreReused) {
+TEST(CloudLayout, LabelsThatAreThereAlreadyAreReused) {
   auto cloud = CloudBuilder().xyz().field("observed", PointField::UINT8).padding(3).size(2).build();
   const CloudLayout layout = layoutOf(*cloud);
   EXPECT_EQ(layout.observed_offset, 12U);

@@ -65,7 +65,7 @@ std::vector<Form> forms() {
   };
 }
 
-TEST(ParseEchoes, everyLayoutGivesTheSameEchoes) {
+TEST(ParseEchoes, EveryLayoutGivesTheSameEchoes) {
   for (Form& form : forms()) {
     form.builder.size(form.width, form.height);
     std::mt19937 random(7);
@@ -80,7 +80,7 @@ TEST(ParseEchoes, everyLayoutGivesTheSameEchoes) {
   }
 }
 
-TEST(ParseEchoes, nonFiniteEchoesKeepTheirPlace) {
+TEST(ParseEchoes, NonFiniteEchoesKeepTheirPlace) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CloudBuilder builder;
   builder.xyz(PointField::FLOAT64).size(4).at(0, nan, 1, 2).at(1, 1, 2, 3).at(2, 4, 1e300, 5).at(3, -1e300, 0, 0);
@@ -92,13 +92,13 @@ TEST(ParseEchoes, nonFiniteEchoesKeepTheirPlace) {
   EXPECT_EQ(echoes[3].x(), -std::numeric_limits<float>::infinity());
 }
 
-TEST(ParseEchoes, emptyAndOneEcho) {
+TEST(ParseEchoes, EmptyAndOneEcho) {
   EXPECT_TRUE(echoesOf(*CloudBuilder().xyz().size(0).build()).empty());
   EXPECT_EQ(echoesOf(*CloudBuilder().xyz().size(1).at(0, 1, 2, 3).build()).size(), 1U);
 }
 
 /// A cloud of billions of empty rows needs no byte; this many would take for ever.
-TEST(ParseEchoes, rowsWithoutEchoesAreNotWalked) {
+TEST(ParseEchoes, RowsWithoutEchoesAreNotWalked) {
   const auto cloud = CloudBuilder().xyz().field("time", PointField::FLOAT32).size(0).build();
   CloudLayout layout = std::get<CloudLayout>(judgeLayout(*cloud));
   layout.height = std::size_t{1} << 60U;
@@ -110,7 +110,7 @@ TEST(ParseEchoes, rowsWithoutEchoesAreNotWalked) {
   EXPECT_TRUE(times.after_stamp.empty());
 }
 
-TEST(ParseEchoes, nothingCameBack) {
+TEST(ParseEchoes, NothingCameBack) {
   const auto echoes = echoesOf(*CloudBuilder().xyz().size(2).at(0, 0, 0, 0).at(1, 0, 0, 1e-6).build());
   EXPECT_TRUE(echoes[0].array().isNaN().all());
   EXPECT_EQ(echoes[1], Eigen::Vector3f(0.0F, 0.0F, 1e-6F));
@@ -155,7 +155,7 @@ class EchoTime : public testing::Test {
   std::string problem_;
 };
 
-TEST_F(EchoTime, driversOwnFields) {
+TEST_F(EchoTime, DriversOwnFields) {
   expectThreeTimes(threeTimes("time", PointField::FLOAT32, 1.0, 0.0));
   expectThreeTimes(threeTimes("t", PointField::UINT32, 1e9, 0.0));
   expectThreeTimes(threeTimes("offset_time", PointField::UINT32, 1e9, 0.0));
@@ -163,25 +163,25 @@ TEST_F(EchoTime, driversOwnFields) {
   expectThreeTimes(threeTimes("timestamp", PointField::FLOAT64, 1e9, kStamp * 1e9));
 }
 
-TEST_F(EchoTime, bigEndian) {
+TEST_F(EchoTime, BigEndian) {
   expectThreeTimes(threeTimes("time", PointField::FLOAT32, 1.0, 0.0, true));
   expectThreeTimes(threeTimes("t", PointField::UINT32, 1e9, 0.0, true));
   expectThreeTimes(threeTimes("timestamp", PointField::FLOAT64, 1.0, kStamp, true));
 }
 
-TEST_F(EchoTime, otherClocksAreRefusedWithAReason) {
+TEST_F(EchoTime, OtherClocksAreRefusedWithAReason) {
   EXPECT_TRUE(threeTimes("timestamp", PointField::FLOAT64, 1.0, 5000.0).empty());
   EXPECT_NE(problem_.find("not de-skewed"), std::string::npos) << problem_;
   EXPECT_TRUE(threeTimes("time", PointField::FLOAT32, 1.0, std::nan("")).empty());
   EXPECT_FALSE(problem_.empty());
 }
 
-TEST_F(EchoTime, withoutAFieldThereIsNoProblem) {
+TEST_F(EchoTime, WithoutAFieldThereIsNoProblem) {
   EXPECT_TRUE(timesOf(*CloudBuilder().xyz().size(3).build()).empty());
   EXPECT_TRUE(problem_.empty()) << problem_;
 }
 
-TEST_F(EchoTime, onlyFiniteEchoesCount) {
+TEST_F(EchoTime, OnlyFiniteEchoesCount) {
   CloudBuilder builder;
   builder.xyz().field("time", PointField::FLOAT32).size(3);
   builder.at(0, std::nan(""), 0, 0).set(0, "time", 77.0);
@@ -192,7 +192,7 @@ TEST_F(EchoTime, onlyFiniteEchoesCount) {
   EXPECT_NEAR(times.last, 0.03, 1e-6);
 }
 
-TEST(LabelCloud, keepsEveryByteAndAddsTheLabels) {
+TEST(LabelCloud, KeepsEveryByteAndAddsTheLabels) {
   for (Form& form : forms()) {
     SCOPED_TRACE(form.name);
     const auto cloud = form.builder.size(form.width, form.height).build();
@@ -222,7 +222,7 @@ TEST(LabelCloud, keepsEveryByteAndAddsTheLabels) {
   }
 }
 
-TEST(LabelCloud, overwritesEarlierLabels) {
+TEST(LabelCloud, OverwritesEarlierLabels) {
   auto cloud =
       CloudBuilder().xyz().field("dynamic", PointField::UINT8).field("observed", PointField::UINT8).size(60).build();
   const EchoLabels labels = randomLabels(60, 4);
@@ -236,7 +236,7 @@ TEST(LabelCloud, overwritesEarlierLabels) {
   }
 }
 
-TEST(SelectPart, thePartsDivideTheCloud) {
+TEST(SelectPart, ThePartsDivideTheCloud) {
   for (Form& form : forms()) {
     SCOPED_TRACE(form.name);
     const auto cloud = form.builder.size(form.width, form.height).build();

@@ -140,7 +140,7 @@ struct Drive {
   int judged_ = 0;
 };
 
-TEST(DeskewedLabels, areThoseOfUndistortedScans) {
+TEST(DeskewedLabels, AreThoseOfUndistortedScans) {
   const Drive undistorted(false, true), deskewed(true, true), distorted(true, false);
   RecordProperty("iou_undistorted", std::to_string(undistorted.score.iou()));
   RecordProperty("iou_deskewed", std::to_string(deskewed.score.iou()));

@@ -86,7 +86,7 @@ class DiagnosticsTest : public testing::Test {
   ros::Subscriber subscriber_;
 };
 
-TEST_F(DiagnosticsTest, theLevelIsThatOfTheStatusLine) {
+TEST_F(DiagnosticsTest, TheLevelIsThatOfTheStatusLine) {
   EXPECT_EQ(tellNow().level, DiagnosticStatus::WARN);
   EXPECT_EQ(tellNow().message, "WARN: no clouds yet, no odometry yet");
 
@@ -112,7 +112,7 @@ TEST_F(DiagnosticsTest, theLevelIsThatOfTheStatusLine) {
   EXPECT_NE(status.message.find("1 scan dropped (out of order)"), std::string::npos) << status.message;
 }
 
-TEST_F(DiagnosticsTest, keyFiguresAreNumbers) {
+TEST_F(DiagnosticsTest, KeyFiguresAreNumbers) {
   for (int i = 0; i < 5; ++i) scan();
   cloud(now_ + 0.3);  // waits for its odometry
   tellNow();

@@ -58,7 +58,7 @@ class Ouster : public testing::TestWithParam<OusterCase> {
   }
 };
 
-TEST_P(Ouster, positionsAndTimesAreRead) {
+TEST_P(Ouster, PositionsAndTimesAreRead) {
   const auto cloud = scan();
   ASSERT_EQ(cloud->height, rows());
   ASSERT_EQ(cloud->row_step, kColumns * 48U);
@@ -78,7 +78,7 @@ TEST_P(Ouster, positionsAndTimesAreRead) {
   }
 }
 
-TEST_P(Ouster, scansAreStraightenedAndStayOrganised) {
+TEST_P(Ouster, ScansAreStraightenedAndStayOrganised) {
   PipelineRig rig;
   for (int i = -10; i < 30; ++i) {
     auto odometry = test::odometryAt(kStart + 0.01 * i);
@@ -126,7 +126,7 @@ boost::shared_ptr<test::PointCloud2> oldLivoxScan(const std::vector<Eigen::Vecto
   return builder.build();
 }
 
-TEST(OldLivox, isLabelledAsItIs) {
+TEST(OldLivox, IsLabelledAsItIs) {
   PipelineRig rig;
   for (int i = -10; i < 30; ++i) rig.odometry(100.0 + 0.01 * i, kSpeed);
   auto cloud = oldLivoxScan(test::ring(), 100.0);

@@ -71,7 +71,7 @@ Colour colourAt(const sensor_msgs::PointCloud2& cloud, std::size_t echo) {
   return {rgb >> 16U & 0xFFU, rgb >> 8U & 0xFFU, rgb & 0xFFU};
 }
 
-TEST(ExplanationClouds, movingIsMagentaAndReasonsAreTold) {
+TEST(ExplanationClouds, MovingIsMagentaAndReasonsAreTold) {
   Explainer explainer(paperConfig(Method::kDonex3d));
   explainer.explain({{5.0F, 0.0F, 0.5F}});
   const auto explained = explainer.explain({{5.0F, 0.0F, 0.5F}, {0.0F, 6.0F, 0.5F}, {90.0F, 0.0F, 0.0F}});
@@ -101,7 +101,7 @@ std::vector<Eigen::Vector3f> wall() {
   return echoes;
 }
 
-TEST(ExplanationClouds, everyReasonForStaticHasAColour) {
+TEST(ExplanationClouds, EveryReasonForStaticHasAColour) {
   Config config = test::smallConfig();
   config.region.z_min = -2.0;
   config.evidence.ground = false;
@@ -134,7 +134,7 @@ TEST(ExplanationClouds, everyReasonForStaticHasAColour) {
   EXPECT_LT(black.red, colourAt(*cloud, 0).red);
 }
 
-TEST(ExplanationClouds, cellsAreACloudEvenWithoutAny) {
+TEST(ExplanationClouds, CellsAreACloudEvenWithoutAny) {
   std_msgs::Header header;
   header.frame_id = "odom";
   for (const std::size_t count : {0U, 3U}) {

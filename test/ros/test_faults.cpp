@@ -9,7 +9,7 @@ using test::waitFor;
 
 class Faults : public FaultsTest {};
 
-TEST_F(Faults, odometryAtAnyRate) {
+TEST_F(Faults, OdometryAtAnyRate) {
   load();
   for (const double rate : {10.0, 50.0, 200.0, 1000.0}) {
     const std::size_t before = received_.size();
@@ -23,7 +23,7 @@ TEST_F(Faults, odometryAtAnyRate) {
   conclude("odometry at 10, 50, 200, 1000 Hz", "every scan labelled");
 }
 
-TEST_F(Faults, odometryHalfASecondLate) {
+TEST_F(Faults, OdometryHalfASecondLate) {
   load();
   driveWell();
   constexpr int kLate = 5, kScans = 20;  // scans
@@ -36,7 +36,7 @@ TEST_F(Faults, odometryHalfASecondLate) {
   conclude("odometry 0.5 s late", "every scan labelled");
 }
 
-TEST_F(Faults, odometryLostForFiveSeconds) {
+TEST_F(Faults, OdometryLostForFiveSeconds) {
   load();
   driveWell();
   for (int scan = 0; scan < 50; ++scan) {
@@ -49,7 +49,7 @@ TEST_F(Faults, odometryLostForFiveSeconds) {
   conclude("odometry lost for 5 s");
 }
 
-TEST_F(Faults, odometryTwiceAndOutOfOrder) {
+TEST_F(Faults, OdometryTwiceAndOutOfOrder) {
   load();
   driveWell();
   for (int scan = 0; scan < 10; ++scan) {
@@ -63,7 +63,7 @@ TEST_F(Faults, odometryTwiceAndOutOfOrder) {
   conclude("odometry doubled and out of order", "every scan labelled");
 }
 
-TEST_F(Faults, odometryIsNotANumber) {
+TEST_F(Faults, OdometryIsNotANumber) {
   load();
   driveWell();
   for (int scan = 0; scan < 10; ++scan) {
@@ -82,7 +82,7 @@ TEST_F(Faults, odometryIsNotANumber) {
   conclude("odometry with NaN and invalid quaternions for 1 s");
 }
 
-TEST_F(Faults, mountingComesLate) {
+TEST_F(Faults, MountingComesLate) {
   load();
   advance();
   sendOdometry(now_);
@@ -94,7 +94,7 @@ TEST_F(Faults, mountingComesLate) {
   conclude("the mounting's transform comes 0.1 s after the first cloud", "every scan labelled");
 }
 
-TEST_F(Faults, mountingIsMissing) {
+TEST_F(Faults, MountingIsMissing) {
   load();
   driveWell();
   for (int scan = 0; scan < 10; ++scan) {
@@ -108,7 +108,7 @@ TEST_F(Faults, mountingIsMissing) {
   conclude("clouds in a frame that tf does not know");
 }
 
-TEST_F(Faults, unreadableClouds) {
+TEST_F(Faults, UnreadableClouds) {
   load();
   driveWell();
   for (std::uint32_t claim : {4000000000U, 4294967295U}) {
@@ -124,7 +124,7 @@ TEST_F(Faults, unreadableClouds) {
   conclude("clouds that claim 4 billion points; truncated ones");
 }
 
-TEST_F(Faults, cloudsTwiceAndOutOfOrder) {
+TEST_F(Faults, CloudsTwiceAndOutOfOrder) {
   load();
   driveWell();
   sendCloud(now_);
@@ -133,7 +133,7 @@ TEST_F(Faults, cloudsTwiceAndOutOfOrder) {
   conclude("a cloud twice; one that comes after its successor");
 }
 
-TEST_F(Faults, theClockJumpsAhead) {
+TEST_F(Faults, TheClockJumpsAhead) {
   load();
   driveWell();
   setClock(now_ + 1000.0);
@@ -141,7 +141,7 @@ TEST_F(Faults, theClockJumpsAhead) {
   conclude("the clock jumps 1000 s ahead");
 }
 
-TEST_F(Faults, theClockJumpsBack) {
+TEST_F(Faults, TheClockJumpsBack) {
   load();
   setClock(2000.0);
   driveWell();
@@ -150,7 +150,7 @@ TEST_F(Faults, theClockJumpsBack) {
   conclude("the clock jumps 1000 s back");
 }
 
-TEST_F(Faults, aBagThatLoops) {
+TEST_F(Faults, ABagThatLoops) {
   load();
   for (int loop = 0; loop < 4; ++loop) {
     setClock(kBegin);
@@ -159,7 +159,7 @@ TEST_F(Faults, aBagThatLoops) {
   conclude("a bag that loops 4 times", "every scan labelled");
 }
 
-TEST_F(Faults, theClockIsPaused) {
+TEST_F(Faults, TheClockIsPaused) {
   load();
   driveWell();
   ASSERT_TRUE(waitFor([this] { return status_.find("no clouds for") != std::string::npos; })) << status_;
@@ -167,7 +167,7 @@ TEST_F(Faults, theClockIsPaused) {
   conclude("the clock is paused; the status says `no clouds for ... s`");
 }
 
-TEST_F(Faults, aSensorAtRestNeedsNothing) {
+TEST_F(Faults, ASensorAtRestNeedsNothing) {
   ros::param::set(nodeName() + "/odometry_source", "none");
   load();
   for (int scan = 0; scan < 10; ++scan) {
@@ -179,7 +179,7 @@ TEST_F(Faults, aSensorAtRestNeedsNothing) {
   conclude("`odometry_source: none`: no odometry, no tf at all", "every scan labelled");
 }
 
-TEST_F(Faults, motionFromTfThatIsLateAndThenLost) {
+TEST_F(Faults, MotionFromTfThatIsLateAndThenLost) {
   ros::param::set(nodeName() + "/odometry_source", "tf");
   load();
   ros::Publisher tf = nh_.advertise<tf2_msgs::TFMessage>("/tf", 100);

@@ -37,7 +37,7 @@ class FaultsOfLoad : public FaultsTest {
   static constexpr double kSpacing = 1e-4;          // [s]
 };
 
-TEST_F(FaultsOfLoad, cloudsFasterThanTheyCanBeProcessed) {
+TEST_F(FaultsOfLoad, CloudsFasterThanTheyCanBeProcessed) {
   load();
   driveWell();
   const auto burst = burstAfter(now_, 80);
@@ -49,7 +49,7 @@ TEST_F(FaultsOfLoad, cloudsFasterThanTheyCanBeProcessed) {
   conclude("80 clouds at once: the 12 newest are labelled");
 }
 
-TEST_F(FaultsOfLoad, fiveHundredCloudsWhileOneIsJudged) {
+TEST_F(FaultsOfLoad, FiveHundredCloudsWhileOneIsJudged) {
   load();
   driveWell();
   const double big = now_ + 0.001;
@@ -65,7 +65,7 @@ TEST_F(FaultsOfLoad, fiveHundredCloudsWhileOneIsJudged) {
   conclude("500 clouds while one scan is judged: the 12 newest are labelled");
 }
 
-TEST_F(FaultsOfLoad, burstAfterBurst) {
+TEST_F(FaultsOfLoad, BurstAfterBurst) {
   load();
   driveWell();
   constexpr int kBursts = 4, kClouds = 40;

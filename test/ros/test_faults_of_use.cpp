@@ -15,7 +15,7 @@ using test::waitFor;
 
 class FaultsOfUse : public FaultsTest {};
 
-TEST_F(FaultsOfUse, resetStorm) {
+TEST_F(FaultsOfUse, ResetStorm) {
   load();
   driveWell();
   for (int scan = 0; scan < 10; ++scan) {
@@ -30,7 +30,7 @@ TEST_F(FaultsOfUse, resetStorm) {
   conclude("`~reset` 100 times in a second", "every scan labelled");
 }
 
-TEST_F(FaultsOfUse, reconfigureStorm) {
+TEST_F(FaultsOfUse, ReconfigureStorm) {
   load();
   driveWell();
   dynamic_reconfigure::Reconfigure change;
@@ -100,7 +100,7 @@ class OtherProcess : public FaultsTest {
   pid_t process_ = 0;
 };
 
-TEST_F(OtherProcess, managerKilledAndRestarted) {
+TEST_F(OtherProcess, ManagerKilledAndRestarted) {
   const std::string preload = std::string("LD_PRELOAD=") + DONEX_PRELOAD;
   const std::vector<std::string> manager{"rosrun",  "--prefix",   "env " + preload,    "nodelet",
                                          "nodelet", "standalone", "donex/DonexNodelet"};
@@ -121,7 +121,7 @@ TEST_F(OtherProcess, managerKilledAndRestarted) {
   conclude("the manager is killed and started again");
 }
 
-TEST_F(OtherProcess, interruptedInTheMiddleOfAScan) {
+TEST_F(OtherProcess, InterruptedInTheMiddleOfAScan) {
   start({DONEX_NODE});
   waitUntilConnected();
   driveWell();
@@ -141,7 +141,7 @@ TEST_F(OtherProcess, interruptedInTheMiddleOfAScan) {
 }
 
 /// The last test: rostest counts tests and ignores exit codes.
-TEST(TableOfFaults, isThatOfTheDocuments) {
+TEST(TableOfFaults, IsThatOfTheDocuments) {
   const testing::UnitTest& run = *testing::UnitTest::GetInstance();
   if (run.test_to_run_count() != run.total_test_count()) GTEST_SKIP() << "only with all rows";
   if (run.failed_test_count() != 0) GTEST_SKIP() << "only with all rows, and some test failed";

@@ -21,7 +21,7 @@ struct Case {
   void (*spoil)(Health&);
 };
 
-TEST(Health, saysWhatAnEngineerUnderstands) {
+TEST(Health, SaysWhatAnEngineerUnderstands) {
   using Level = HealthLine::Level;
   const Case cases[] = {
       {"OK: 9.9 Hz, 11 ms a scan", Level::kOk, [](Health&) {}},

@@ -19,7 +19,7 @@ class Manager : public ManagerTest {
   }
 };
 
-TEST_F(Manager, labelsEveryCloudInItsFrame) {
+TEST_F(Manager, LabelsEveryCloudInItsFrame) {
   load();
   for (std::size_t i = 0; i < 20; ++i) {
     send(100.0 + 0.1 * static_cast<double>(i));
@@ -35,7 +35,7 @@ TEST_F(Manager, labelsEveryCloudInItsFrame) {
   EXPECT_EQ(diagnostic("clouds dropped"), "0");
 }
 
-TEST_F(Manager, thePartsDivideTheCloudWhileSomebodyListens) {
+TEST_F(Manager, ThePartsDivideTheCloudWhileSomebodyListens) {
   load();
   sensor_msgs::PointCloud2ConstPtr moving, still;
   const boost::function<void(const sensor_msgs::PointCloud2ConstPtr&)> take_moving = [&](const auto& cloud) {
@@ -53,7 +53,7 @@ TEST_F(Manager, thePartsDivideTheCloudWhileSomebodyListens) {
   EXPECT_EQ(still->fields.size(), 4U);
 }
 
-TEST_F(Manager, badCloudsAreCountedAndTheNextOneIsLabelled) {
+TEST_F(Manager, BadCloudsAreCountedAndTheNextOneIsLabelled) {
   load();
   const auto good = [] { return CloudBuilder().xyz().size(4).build(); };
   auto truncated = good(), huge = good(), no_step = good();
@@ -69,7 +69,7 @@ TEST_F(Manager, badCloudsAreCountedAndTheNextOneIsLabelled) {
   EXPECT_TRUE(waitForLabeled(1));
 }
 
-TEST_F(Manager, missingTransformIsTold) {
+TEST_F(Manager, MissingTransformIsTold) {
   load();
   sendOdometry(100.0);
   clouds_.publish(test::plainCloud(test::ring(), 100.0, "unmounted"));
@@ -79,7 +79,7 @@ TEST_F(Manager, missingTransformIsTold) {
   EXPECT_TRUE(waitForLabeled(1));
 }
 
-TEST_F(Manager, lateOdometryLosesNothing) {
+TEST_F(Manager, LateOdometryLosesNothing) {
   ros::param::set(nodeName() + "/odometry_timeout", 10.0);
   load();
   for (int i = 0; i < 8; ++i) sendCloud(100.0 + 0.1 * i);
@@ -89,7 +89,7 @@ TEST_F(Manager, lateOdometryLosesNothing) {
   EXPECT_TRUE(waitForLabeled(8));
 }
 
-TEST_F(Manager, odometryWithFaultsIsCounted) {
+TEST_F(Manager, OdometryWithFaultsIsCounted) {
   load();
   auto nan = boost::make_shared<nav_msgs::Odometry>(test::odometryAt(100.0));
   nan->pose.pose.position.x = std::nan("");
@@ -103,7 +103,7 @@ TEST_F(Manager, odometryWithFaultsIsCounted) {
   EXPECT_TRUE(waitForLabeled(1));
 }
 
-TEST_F(Manager, aLoopedBagGoesOn) {
+TEST_F(Manager, ALoopedBagGoesOn) {
   usePapersRule(nodeName());
   load();
   for (std::size_t loop = 0; loop < 2; ++loop) {
@@ -116,7 +116,7 @@ TEST_F(Manager, aLoopedBagGoesOn) {
   }
 }
 
-TEST_F(Manager, resetForgetsTheGrid) {
+TEST_F(Manager, ResetForgetsTheGrid) {
   usePapersRule(nodeName());
   load();
   for (int i = 0; i < 9; ++i) send(100.0 + 0.1 * i);
@@ -133,7 +133,7 @@ TEST_F(Manager, resetForgetsTheGrid) {
   expectDynamic(*received_[19], false);
 }
 
-TEST_F(Manager, anOverloadDropsTheOldestAndCountsThem) {
+TEST_F(Manager, AnOverloadDropsTheOldestAndCountsThem) {
   load();
   for (int i = 0; i < 60; ++i) sendCloud(100.0 + 0.1 * i);
   ASSERT_TRUE(waitForDiagnostic("dropped: queue full", std::to_string(60 - NodeConfig().queue_size)));
@@ -144,7 +144,7 @@ TEST_F(Manager, anOverloadDropsTheOldestAndCountsThem) {
   EXPECT_EQ(labeled + dropped, 60);
 }
 
-TEST_F(Manager, objectsAreToldScanByScan) {
+TEST_F(Manager, ObjectsAreToldScanByScan) {
   load();
   std::vector<MovingObjectsConstPtr> told;
   const boost::function<void(const MovingObjectsConstPtr&)> take = [&](const auto& objects) {
@@ -158,7 +158,7 @@ TEST_F(Manager, objectsAreToldScanByScan) {
   EXPECT_EQ(told[0]->header.stamp, ros::Time(100.0));
 }
 
-TEST_F(Manager, layersForTheEyeComeWhileSomebodyLooks) {
+TEST_F(Manager, LayersForTheEyeComeWhileSomebodyLooks) {
   load();
   std::map<std::string, sensor_msgs::PointCloud2ConstPtr> shown;
   std::vector<ros::Subscriber> eyes;
@@ -179,7 +179,7 @@ TEST_F(Manager, layersForTheEyeComeWhileSomebodyLooks) {
 }
 
 /// Two LiDARs, each with a classifier, a mounting and a cloud of its own: what is new to the one is not to the other.
-TEST_F(Manager, twoLidarsInOneManager) {
+TEST_F(Manager, TwoLidarsInOneManager) {
   const std::string other = nh_.getNamespace() + "/right";
   setUpSmall(other);
   for (const std::string& node : {nodeName(), other}) {
@@ -214,7 +214,7 @@ TEST_F(Manager, twoLidarsInOneManager) {
   }
 }
 
-TEST_F(Manager, canBeUnloadedAndLoadedWhileDataFlows) {
+TEST_F(Manager, CanBeUnloadedAndLoadedWhileDataFlows) {
   for (int i = 0; i < 4; ++i) {
     load();
     for (int k = 0; k < 10; ++k) send(100.0 + i + 0.1 * k);
@@ -224,7 +224,7 @@ TEST_F(Manager, canBeUnloadedAndLoadedWhileDataFlows) {
   }
 }
 
-TEST_F(Manager, theStatusLineSaysWhatIsWrong) {
+TEST_F(Manager, TheStatusLineSaysWhatIsWrong) {
   load();
   ASSERT_TRUE(waitFor([this] { return status_ == "WARN: no clouds yet, no odometry yet"; }));
   sendCloud(100.0);
@@ -252,7 +252,7 @@ std::vector<Eigen::Vector3f> room(bool somebody) {
 }
 
 /// What config/at_rest.yaml says is enough: no odometry and no tf, and who comes in is dynamic within a second.
-TEST_F(Manager, aSensorAtRestTellsWhoComesInTheFirstSecond) {
+TEST_F(Manager, ASensorAtRestTellsWhoComesInTheFirstSecond) {
   XmlRpc::XmlRpcValue values;
   ASSERT_TRUE(ros::param::get("/at_rest", values)) << "manager.test loads config/at_rest.yaml";
   for (const auto& [name, value] : values) ros::param::set(nodeName() + "/" + name, value);

@@ -59,7 +59,7 @@ std::vector<std::string> transportsOf(const std::string& topic, const std::strin
   return transports;
 }
 
-TEST(Map, cloudsAreHandedOverWithinTheManager) {
+TEST(Map, CloudsAreHandedOverWithinTheManager) {
   ros::NodeHandle nh;
   sensor_msgs::PointCloud2ConstPtr cells;
   const boost::function<void(const sensor_msgs::PointCloud2ConstPtr&)> take = [&](const auto& cloud) { cells = cloud; };
@@ -171,7 +171,7 @@ class ToldMap {
 };
 
 /// The map that launch/map.launch makes, against one that map.test makes of all echoes in the same way.
-TEST(Map, whatMovesIsNotInIt) {
+TEST(Map, WhatMovesIsNotInIt) {
   constexpr std::size_t kScans = 80;
   LiveDrive drive;
   const ToldMap of_static("/static_map/cells"), of_all("/map_of_all/cells");

@@ -83,7 +83,7 @@ class Markers : public testing::Test {
   Screen screen_;
 };
 
-TEST_F(Markers, showEverything) {
+TEST_F(Markers, ShowEverything) {
   show();
   EXPECT_EQ(screen_.namespaces(), (std::set<std::string>{"dynamic_cells", "grid", "objects", "speeds", "velocities"}));
   const Marker& cells = screen_.shown.at({"dynamic_cells", 0});
@@ -94,7 +94,7 @@ TEST_F(Markers, showEverything) {
   EXPECT_EQ(screen_.shown.count({"velocities", 7}), 0U) << "an arrow without a direction";
 }
 
-TEST_F(Markers, speedsAreWrittenAboveTheBoxes) {
+TEST_F(Markers, SpeedsAreWrittenAboveTheBoxes) {
   detector_.objects_ = {objectOf(3, 8.34)};
   show();
   const Marker& speed = screen_.shown.at({"speeds", 3});
@@ -102,7 +102,7 @@ TEST_F(Markers, speedsAreWrittenAboveTheBoxes) {
   EXPECT_GT(speed.pose.position.z, 0.5);
 }
 
-TEST_F(Markers, theGridHasTwelveEdgesAlongItsAxes) {
+TEST_F(Markers, TheGridHasTwelveEdgesAlongItsAxes) {
   show();
   const auto& points = screen_.shown.at({"grid", 0}).points;
   ASSERT_EQ(points.size(), 24U);
@@ -116,7 +116,7 @@ TEST_F(Markers, theGridHasTwelveEdgesAlongItsAxes) {
   EXPECT_DOUBLE_EQ(length, 4 * (10.0 + 20.0 + 3.0));
 }
 
-TEST_F(Markers, nothingStaleStays) {
+TEST_F(Markers, NothingStaleStays) {
   show();
   detector_.cells_.clear();
   detector_.objects_ = {objectOf(9, 2.0)};
@@ -129,7 +129,7 @@ TEST_F(Markers, nothingStaleStays) {
   EXPECT_EQ(screen_.namespaces(), std::set<std::string>{"grid"});
 }
 
-TEST_F(Markers, switchesTakeTheirPartAway) {
+TEST_F(Markers, SwitchesTakeTheirPartAway) {
   show();
   config_.node.marker_cells = false;
   show();
@@ -147,7 +147,7 @@ TEST_F(Markers, switchesTakeTheirPartAway) {
   EXPECT_TRUE(screen_.shown.empty());
 }
 
-TEST_F(Markers, clearTakesAllAwayAndOnce) {
+TEST_F(Markers, ClearTakesAllAwayAndOnce) {
   show();
   screen_.take(*maker_.clear());
   EXPECT_TRUE(screen_.shown.empty());

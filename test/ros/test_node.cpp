@@ -11,7 +11,7 @@ namespace {
 
 using test::waitFor;
 
-TEST(Node, labelsOverTheNetwork) {
+TEST(Node, LabelsOverTheNetwork) {
   ros::NodeHandle nh;
   auto clouds = nh.advertise<sensor_msgs::PointCloud2>("points", 10);
   auto odometry = nh.advertise<nav_msgs::Odometry>("odom", 10);
@@ -49,7 +49,7 @@ Outcome run(const std::string& command) {
   return {pclose(pipe), output};
 }
 
-TEST(Node, badParametersEndItWithAllFaultsInOneMessage) {
+TEST(Node, BadParametersEndItWithAllFaultsInOneMessage) {
   const auto outcome = run(std::string(DONEX_NODE) + " __name:=faulty _voxel_size:=9.5 _metod:=donex_3d _deskew:=2");
   EXPECT_EQ(WEXITSTATUS(outcome.status), 1) << outcome.output;
   for (const char* words : {"voxel_size is 9.5", "'metod'", "deskew is an integer"}) {

@@ -18,7 +18,7 @@ class TwoObjects : public Detector {
   std::vector<Object> objects_ = std::vector<Object>(2);
 };
 
-TEST(ObjectMessages, sayWhatTheDetectorKnows) {
+TEST(ObjectMessages, SayWhatTheDetectorKnows) {
   TwoObjects detector;
   Object& car = detector.objects_[1];
   car.id = 7;
@@ -46,7 +46,7 @@ TEST(ObjectMessages, sayWhatTheDetectorKnows) {
   EXPECT_EQ(moving.echoes, 321U);
 }
 
-TEST(ObjectMessages, sayAlsoThatNothingMoves) {
+TEST(ObjectMessages, SayAlsoThatNothingMoves) {
   TwoObjects detector;
   detector.reset();
   EXPECT_TRUE(toMessage(detector, ros::Time(1.0), "odom")->objects.empty());

@@ -85,7 +85,7 @@ class Maps {
   ros::Time warm_up_until_;
 };
 
-TEST(OctomapBuilder, movingThingsHardlyGetIn) {
+TEST(OctomapBuilder, MovingThingsHardlyGetIn) {
   const Maps maps;
   const std::size_t of_all = maps.ghostsIn(maps.of_all), of_static = maps.ghostsIn(maps.of_static);
   std::cout << "voxels that only moving objects hit, occupied in a map of all echoes: " << of_all
@@ -95,7 +95,7 @@ TEST(OctomapBuilder, movingThingsHardlyGetIn) {
   EXPECT_GT(maps.of_static.occupiedCells({})->width, 1000U) << "the street is there";
 }
 
-TEST(OctomapBuilder, unreadableCloudsAreRefused) {
+TEST(OctomapBuilder, UnreadableCloudsAreRefused) {
   OctomapBuilder map({});
   EXPECT_FALSE(map.add(*test::CloudBuilder().field("x", test::PointField::FLOAT32).size(2).build(),
                        Eigen::Isometry3d::Identity()));

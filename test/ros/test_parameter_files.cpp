@@ -53,14 +53,14 @@ std::map<std::string, std::string> valuesOf(Config config) {
   return values;
 }
 
-TEST(ParameterFiles, areWrittenFromTheCode) {
+TEST(ParameterFiles, AreWrittenFromTheCode) {
   EXPECT_EQ(contentOf(kPackage + "/config/default.yaml"), defaultYaml()) << kAdvice;
   EXPECT_EQ(contentOf(kPackage + "/cfg/Donex.cfg"), reconfigureCfg()) << kAdvice;
   EXPECT_EQ(contentOf(kPackage + "/config/paper_3d.yaml"), paperYaml(Method::kDonex3d)) << kAdvice;
   EXPECT_EQ(contentOf(kPackage + "/config/paper_2d.yaml"), paperYaml(Method::kDonex2d)) << kAdvice;
 }
 
-TEST(ParameterFiles, defaultYamlReadsBackAsTheDefaults) {
+TEST(ParameterFiles, DefaultYamlReadsBackAsTheDefaults) {
   const Config config = readConfigFile(kPackage + "/config/default.yaml");
   EXPECT_EQ(valuesOf(config), valuesOf({}));
   for (const auto& [name, value] : valuesOf({})) {
@@ -68,7 +68,7 @@ TEST(ParameterFiles, defaultYamlReadsBackAsTheDefaults) {
   }
 }
 
-TEST(ParameterFiles, paperFilesSwitchEveryStepOff) {
+TEST(ParameterFiles, PaperFilesSwitchEveryStepOff) {
   for (const std::string name : {"paper_3d", "paper_2d"}) {
     const Config config = readConfigFile(kPackage + "/config/" + name + ".yaml");
     EXPECT_TRUE(config.isPaper()) << name;
@@ -88,7 +88,7 @@ std::vector<std::string> namesIn(const std::filesystem::path& file) {
 }
 
 /// Whatever a file for one sensor or one use repeats of default.yaml would stay behind when a default changes.
-TEST(ParameterFiles, filesForOneUseNameOnlyWhatDiffersFromTheDefaults) {
+TEST(ParameterFiles, FilesForOneUseNameOnlyWhatDiffersFromTheDefaults) {
   std::vector<std::filesystem::path> files{kPackage + "/config/at_rest.yaml", kPackage + "/config/sparse.yaml"};
   for (const auto& entry : std::filesystem::directory_iterator(kPackage + "/config/sensors")) files.push_back(entry);
   ASSERT_GT(files.size(), 10U);
@@ -155,7 +155,7 @@ struct CfgComparison {
   }
 };
 
-TEST(ParameterFiles, cfgHasTheCodesDefaultsAndRanges) {
+TEST(ParameterFiles, CfgHasTheCodesDefaultsAndRanges) {
   CfgComparison comparison;
   DonexConfig::__getDefault__().__toMessage__(comparison.defaults);
   DonexConfig::__getMin__().__toMessage__(comparison.min);
@@ -169,7 +169,7 @@ TEST(ParameterFiles, cfgHasTheCodesDefaultsAndRanges) {
       << "cfg has parameters that the code has not";
 }
 
-TEST(ParameterFiles, levelsTellSwitchesFromRebuilds) {
+TEST(ParameterFiles, LevelsTellSwitchesFromRebuilds) {
   Config config;
   EXPECT_EQ(levelOf(config, &config.voxel_size), kRebuildsGrid);
   EXPECT_EQ(levelOf(config, &config.region.z_max), kRebuildsGrid);

@@ -19,9 +19,9 @@ std::string faultsOf(const XmlRpcValue& values) {
   return joined(applyParameters(values, config));
 }
 
-TEST(Parameters, emptyNamespaceIsTheDefault) { EXPECT_EQ(faultsOf(XmlRpcValue()), ""); }
+TEST(Parameters, EmptyNamespaceIsTheDefault) { EXPECT_EQ(faultsOf(XmlRpcValue()), ""); }
 
-TEST(Parameters, goodValuesOfEveryType) {
+TEST(Parameters, GoodValuesOfEveryType) {
   XmlRpcValue values;
   values["method"] = "donex_2d";
   values["voxel_size"] = 0.4;
@@ -42,7 +42,7 @@ TEST(Parameters, goodValuesOfEveryType) {
   EXPECT_EQ(config.motion.source, OdometrySource::kNone);
 }
 
-TEST(Parameters, eachFaultIsNamed) {
+TEST(Parameters, EachFaultIsNamed) {
   XmlRpcValue map, list;
   map["x"] = 1;
   list[0] = 1;
@@ -69,7 +69,7 @@ TEST(Parameters, eachFaultIsNamed) {
   }
 }
 
-TEST(Parameters, allFaultsAtOnce) {
+TEST(Parameters, AllFaultsAtOnce) {
   XmlRpcValue values;
   values["method"] = 1;
   values["voxel_size"] = 99.0;
@@ -81,9 +81,9 @@ TEST(Parameters, allFaultsAtOnce) {
   }
 }
 
-TEST(Parameters, notAMap) { EXPECT_EQ(faultsOf(XmlRpcValue(3)), "the parameters are an integer, must be a map"); }
+TEST(Parameters, NotAMap) { EXPECT_EQ(faultsOf(XmlRpcValue(3)), "the parameters are an integer, must be a map"); }
 
-TEST(Messages, aRoundTripKeepsWhatIsReconfigurable) {
+TEST(Messages, ARoundTripKeepsWhatIsReconfigurable) {
   Config config;
   config.method = Method::kDonex2d;
   config.voxel_size = 0.35;
@@ -98,7 +98,7 @@ TEST(Messages, aRoundTripKeepsWhatIsReconfigurable) {
   EXPECT_TRUE(sameDetection(config, read));
 }
 
-TEST(Messages, whatIsFixedAtStartIsNotInThem) {
+TEST(Messages, WhatIsFixedAtStartIsNotInThem) {
   for (const auto& parameter : toMessage({}).strs) EXPECT_NE(parameter.name, "base_frame");
   EXPECT_FALSE(toMessage({}).strs.empty());
   dynamic_reconfigure::Config message;
@@ -110,7 +110,7 @@ TEST(Messages, whatIsFixedAtStartIsNotInThem) {
   EXPECT_EQ(config.motion.base_frame, "base_link");
 }
 
-TEST(Messages, badValuesAreFaults) {
+TEST(Messages, BadValuesAreFaults) {
   Config config;
   dynamic_reconfigure::Config message = toMessage(config);
   for (auto& parameter : message.strs) {
@@ -124,7 +124,7 @@ TEST(Messages, badValuesAreFaults) {
   EXPECT_NE(faults.find("voxel_size is -1"), std::string::npos) << faults;
 }
 
-TEST(SameDetection, onlySwitchesOfTheNodeAreFree) {
+TEST(SameDetection, OnlySwitchesOfTheNodeAreFree) {
   Config config;
   config.node.markers = false;
   EXPECT_TRUE(sameDetection({}, config));

@@ -14,7 +14,7 @@ using test::CloudBuilder;
 using test::PipelineRig;
 using test::PointField;
 
-TEST(Pipeline, waitsForOdometryThatCoversTheStamp) {
+TEST(Pipeline, WaitsForOdometryThatCoversTheStamp) {
   PipelineRig rig;
   rig.odometry(100.0);
   rig.cloud(100.05);
@@ -29,7 +29,7 @@ TEST(Pipeline, waitsForOdometryThatCoversTheStamp) {
   EXPECT_EQ(rig.pipeline.waiting(), 0U);
 }
 
-TEST(Pipeline, interpolatesThePoseAtTheStamp) {
+TEST(Pipeline, InterpolatesThePoseAtTheStamp) {
   PipelineRig rig;
   rig.odometry(100.0, 8.0);
   rig.odometry(100.1, 8.0);
@@ -40,7 +40,7 @@ TEST(Pipeline, interpolatesThePoseAtTheStamp) {
   EXPECT_NEAR(rig.labeled[0].base_from_sensor.translation().z(), 1.7, 1e-12);
 }
 
-TEST(Pipeline, theOrderOfArrivalDoesNotMatter) {
+TEST(Pipeline, TheOrderOfArrivalDoesNotMatter) {
   std::mt19937 random(11);
   for (int repetition = 0; repetition < 20; ++repetition) {
     // Clouds at 10 Hz, odometry at 50 Hz, both out of order by up to 0.3 s.
@@ -69,7 +69,7 @@ TEST(Pipeline, theOrderOfArrivalDoesNotMatter) {
   }
 }
 
-TEST(Pipeline, extrapolatesOnlyAfterTheTimeoutAndOnlyBounded) {
+TEST(Pipeline, ExtrapolatesOnlyAfterTheTimeoutAndOnlyBounded) {
   PipelineRig rig;
   rig.odometry(99.9, 8.0);
   rig.odometry(100.0, 8.0);
@@ -84,7 +84,7 @@ TEST(Pipeline, extrapolatesOnlyAfterTheTimeoutAndOnlyBounded) {
   EXPECT_NE(rig.drops.at(0).find("0.030 s older"), std::string::npos) << rig.drops[0];
 }
 
-TEST(Pipeline, withoutOdometryEveryCloudIsDroppedWithAReason) {
+TEST(Pipeline, WithoutOdometryEveryCloudIsDroppedWithAReason) {
   PipelineRig rig;
   for (int i = 0; i < 5; ++i) rig.cloud(100.0 + 0.1 * i);
   rig.run(101.1);
@@ -92,7 +92,7 @@ TEST(Pipeline, withoutOdometryEveryCloudIsDroppedWithAReason) {
   EXPECT_EQ(rig.drops.size(), 5U);
 }
 
-TEST(Pipeline, lateOdometryLosesNoCloud) {
+TEST(Pipeline, LateOdometryLosesNoCloud) {
   PipelineRig rig;
   for (int i = 0; i < 30; ++i) {
     const double now = 100.0 + 0.1 * i;
@@ -104,7 +104,7 @@ TEST(Pipeline, lateOdometryLosesNoCloud) {
   EXPECT_EQ(rig.pipeline.counts().dropped.total(), 0U);
 }
 
-TEST(Pipeline, beforeTheFirstOdometry) {
+TEST(Pipeline, BeforeTheFirstOdometry) {
   PipelineRig rig;
   rig.odometry(100.0);
   rig.cloud(99.9);
@@ -112,7 +112,7 @@ TEST(Pipeline, beforeTheFirstOdometry) {
   EXPECT_EQ(rig.dropped(DropReason::kBeforeOdometry), 1U);
 }
 
-TEST(Pipeline, aGapIsNotInterpolated) {
+TEST(Pipeline, AGapIsNotInterpolated) {
   PipelineRig rig;
   rig.odometry(100.0);
   rig.odometry(105.0);
@@ -123,7 +123,7 @@ TEST(Pipeline, aGapIsNotInterpolated) {
   EXPECT_EQ(rig.stamps(), std::vector<double>{105.0});
 }
 
-TEST(Pipeline, theQueueIsBoundedAndTheNewestStay) {
+TEST(Pipeline, TheQueueIsBoundedAndTheNewestStay) {
   Config config = test::smallConfig();
   config.node.queue_size = 3;
   PipelineRig rig(config);
@@ -136,7 +136,7 @@ TEST(Pipeline, theQueueIsBoundedAndTheNewestStay) {
   EXPECT_EQ(rig.stamps(), (std::vector<double>{100.5, 100.6, 100.7}));
 }
 
-TEST(Pipeline, missingTransformIsWaitedForThenDropped) {
+TEST(Pipeline, MissingTransformIsWaitedForThenDropped) {
   PipelineRig rig(test::smallConfig(), false);
   for (int i = 0; i < 20; ++i) rig.odometry(100.0 + 0.1 * i);
   rig.cloud(100.0);
@@ -149,7 +149,7 @@ TEST(Pipeline, missingTransformIsWaitedForThenDropped) {
   EXPECT_EQ(rig.stamps(), std::vector<double>{100.5});
 }
 
-TEST(Pipeline, odometryOfAnUnconnectedFrame) {
+TEST(Pipeline, OdometryOfAnUnconnectedFrame) {
   PipelineRig rig;
   const auto wrong = [](double stamp) {
     auto odometry = test::odometryAt(stamp);
@@ -170,7 +170,7 @@ TEST(Pipeline, odometryOfAnUnconnectedFrame) {
   EXPECT_EQ(rig.forgotten.size(), 1U);
 }
 
-TEST(Pipeline, aLeadingSlashIsNoOtherFrame) {
+TEST(Pipeline, ALeadingSlashIsNoOtherFrame) {
   PipelineRig rig;
   auto odometry = test::odometryAt(100.0);
   odometry.header.frame_id = "/odom";
@@ -181,7 +181,7 @@ TEST(Pipeline, aLeadingSlashIsNoOtherFrame) {
   EXPECT_EQ(rig.labeled.size(), 1U);
 }
 
-TEST(Pipeline, baseFrameWhereTheOdometryNamesNone) {
+TEST(Pipeline, BaseFrameWhereTheOdometryNamesNone) {
   PipelineRig rig;
   auto odometry = test::odometryAt(100.0);
   odometry.child_frame_id.clear();
@@ -191,7 +191,7 @@ TEST(Pipeline, baseFrameWhereTheOdometryNamesNone) {
   EXPECT_EQ(rig.labeled.size(), 1U);
 }
 
-TEST(Pipeline, atRestNothingElseIsNeeded) {
+TEST(Pipeline, AtRestNothingElseIsNeeded) {
   PipelineRig rig(test::smallConfig(OdometrySource::kNone), false);
   rig.cloud(100.0);
   rig.cloud(100.1);
@@ -200,7 +200,7 @@ TEST(Pipeline, atRestNothingElseIsNeeded) {
   EXPECT_TRUE(rig.labeled[1].odom_from_base.isApprox(Eigen::Isometry3d::Identity()));
 }
 
-TEST(Pipeline, motionFromTf) {
+TEST(Pipeline, MotionFromTf) {
   PipelineRig rig(test::smallConfig(OdometrySource::kTf));
   rig.tf.setTransform(test::transformAt(100.0, "odom", "base_link", 0.0), "test");
   rig.cloud(100.05);
@@ -212,7 +212,7 @@ TEST(Pipeline, motionFromTf) {
   EXPECT_NEAR(rig.labeled[0].odom_from_base.translation().x(), 0.5, 1e-6);
 }
 
-TEST(Pipeline, motionFromTwist) {
+TEST(Pipeline, MotionFromTwist) {
   PipelineRig rig(test::smallConfig(OdometrySource::kTwist));
   for (int i = 0; i <= 10; ++i) {
     auto odometry = test::odometryAt(100.0 + 0.1 * i, 4.0);
@@ -238,7 +238,7 @@ boost::shared_ptr<test::PointCloud2> distortedCloud(double stamp) {
   return builder.build();
 }
 
-TEST(Pipeline, deskewsByEachEchosOwnTime) {
+TEST(Pipeline, DeskewsByEachEchosOwnTime) {
   for (const OdometrySource source : {OdometrySource::kPose, OdometrySource::kTwist, OdometrySource::kTf}) {
     PipelineRig rig(test::smallConfig(source));
     rig.tf.setTransform(test::transformAt(100.0, "odom", "base_link", 0.0), "test");
@@ -255,7 +255,7 @@ TEST(Pipeline, deskewsByEachEchosOwnTime) {
   }
 }
 
-TEST(Pipeline, withoutDeskewEchoesStayAsMeasured) {
+TEST(Pipeline, WithoutDeskewEchoesStayAsMeasured) {
   Config config = test::smallConfig();
   config.motion.deskew = false;
   PipelineRig rig(config);
@@ -266,7 +266,7 @@ TEST(Pipeline, withoutDeskewEchoesStayAsMeasured) {
   EXPECT_EQ(rig.labeled[0].echoes[2].x(), 19.0F);
 }
 
-TEST(Pipeline, timesOfAnotherClockAreToldAndIgnored) {
+TEST(Pipeline, TimesOfAnotherClockAreToldAndIgnored) {
   PipelineRig rig;
   rig.odometry(100.0, 10.0);
   auto cloud = CloudBuilder().stamp(100.0).xyz().field("timestamp", PointField::FLOAT64).size(1);

@@ -25,7 +25,7 @@ void drive(PipelineRig& rig, double first, int scans) {
   }
 }
 
-TEST(PipelineFaults, unreadableCloudsAreCountedAndTheNextIsLabelled) {
+TEST(PipelineFaults, UnreadableCloudsAreCountedAndTheNextIsLabelled) {
   PipelineRig rig;
   rig.odometry(100.0);
   rig.pipeline.addCloud(CloudBuilder().field("x", PointField::FLOAT32).size(5).build(), 100.0);
@@ -39,7 +39,7 @@ TEST(PipelineFaults, unreadableCloudsAreCountedAndTheNextIsLabelled) {
   EXPECT_EQ(rig.labeled.size(), 1U);
 }
 
-TEST(PipelineFaults, emptyOneEchoAndAllNaN) {
+TEST(PipelineFaults, EmptyOneEchoAndAllNaN) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   PipelineRig rig;
   drive(rig, 100.0, 2);
@@ -56,7 +56,7 @@ TEST(PipelineFaults, emptyOneEchoAndAllNaN) {
   EXPECT_EQ(rig.labeled[4].labels.observed, std::vector<std::uint8_t>(50, 0));
 }
 
-TEST(PipelineFaults, stampsAtTheBeginningOfTime) {
+TEST(PipelineFaults, StampsAtTheBeginningOfTime) {
   for (const OdometrySource source : {OdometrySource::kTf, OdometrySource::kPose, OdometrySource::kTwist}) {
     PipelineRig rig(test::smallConfig(source));
     rig.tf.setTransform(test::transformAt(0.1, "odom", "base_link", 0.0), "test");
@@ -72,7 +72,7 @@ TEST(PipelineFaults, stampsAtTheBeginningOfTime) {
   }
 }
 
-TEST(PipelineFaults, aDuplicateIsDropped) {
+TEST(PipelineFaults, ADuplicateIsDropped) {
   PipelineRig rig;
   rig.cloud(100.0);
   rig.cloud(100.0);
@@ -83,7 +83,7 @@ TEST(PipelineFaults, aDuplicateIsDropped) {
   EXPECT_EQ(rig.dropped(DropReason::kDuplicate), 2U);
 }
 
-TEST(PipelineFaults, oneStragglerIsDroppedAndTheGridStays) {
+TEST(PipelineFaults, OneStragglerIsDroppedAndTheGridStays) {
   PipelineRig rig;
   drive(rig, 100.0, 3);
   rig.cloud(100.05, 100.3);
@@ -109,7 +109,7 @@ void driveInside(PipelineRig& rig, double stamp) {
 
 const std::vector<std::uint8_t> kNone(36, 0), kAll(36, 1);
 
-TEST(PipelineFaults, aLoopedBagStartsAnewOnceAndLosesNothing) {
+TEST(PipelineFaults, ALoopedBagStartsAnewOnceAndLosesNothing) {
   PipelineRig rig(smallPaperConfig());
   for (int loop = 0; loop < 3; ++loop) {
     driveInside(rig, 100.0);
@@ -126,7 +126,7 @@ TEST(PipelineFaults, aLoopedBagStartsAnewOnceAndLosesNothing) {
   }
 }
 
-TEST(PipelineFaults, aLoopSeenByCloudsAlone) {
+TEST(PipelineFaults, ALoopSeenByCloudsAlone) {
   Config config = test::smallConfig(OdometrySource::kNone);
   PipelineRig rig(config, false);
   for (int loop = 0; loop < 2; ++loop) drive(rig, 100.0, 10);
@@ -134,7 +134,7 @@ TEST(PipelineFaults, aLoopSeenByCloudsAlone) {
   EXPECT_EQ(rig.forgotten.size(), 1U);
 }
 
-TEST(PipelineFaults, cloudsThatWaitWhenTimeRunsBackAreAccountedFor) {
+TEST(PipelineFaults, CloudsThatWaitWhenTimeRunsBackAreAccountedFor) {
   PipelineRig rig;
   drive(rig, 200.0, 5);
   rig.cloud(200.6);
@@ -144,7 +144,7 @@ TEST(PipelineFaults, cloudsThatWaitWhenTimeRunsBackAreAccountedFor) {
   EXPECT_EQ(rig.labeled.size(), 10U);
 }
 
-TEST(PipelineFaults, oneOldOdometryChangesNothing) {
+TEST(PipelineFaults, OneOldOdometryChangesNothing) {
   PipelineRig rig;
   drive(rig, 100.0, 5);
   rig.odometry(3.0);
@@ -154,7 +154,7 @@ TEST(PipelineFaults, oneOldOdometryChangesNothing) {
   EXPECT_EQ(rig.refused(OdometryRefusal::kTooOld), 1U);
 }
 
-TEST(PipelineFaults, badOdometryIsRefusedWithItsReason) {
+TEST(PipelineFaults, BadOdometryIsRefusedWithItsReason) {
   PipelineRig rig;
   auto nan = test::odometryAt(100.0);
   nan.pose.pose.position.y = std::nan("");
@@ -175,7 +175,7 @@ TEST(PipelineFaults, badOdometryIsRefusedWithItsReason) {
   EXPECT_EQ(rig.labeled.size(), 3U);
 }
 
-TEST(PipelineFaults, aLostTwistTrackForgetsTheGrid) {
+TEST(PipelineFaults, ALostTwistTrackForgetsTheGrid) {
   Config config = test::smallConfig(OdometrySource::kTwist);
   PipelineRig rig(config);
   drive(rig, 100.0, 3);
@@ -184,7 +184,7 @@ TEST(PipelineFaults, aLostTwistTrackForgetsTheGrid) {
   EXPECT_EQ(rig.forgotten.size(), 1U);
 }
 
-TEST(PipelineFaults, anExceptionOfTheOwnerIsCounted) {
+TEST(PipelineFaults, AnExceptionOfTheOwnerIsCounted) {
   tf2::BufferCore tf;
   Config config = test::smallConfig(OdometrySource::kNone);
   int calls = 0;
@@ -206,7 +206,7 @@ TEST(PipelineFaults, anExceptionOfTheOwnerIsCounted) {
   EXPECT_EQ(pipeline.counts().clouds_labeled, 1U);
 }
 
-TEST(PipelineFaults, finishSettlesWhatWaits) {
+TEST(PipelineFaults, FinishSettlesWhatWaits) {
   PipelineRig rig;
   drive(rig, 100.0, 3);
   rig.cloud(100.21);
@@ -219,7 +219,7 @@ TEST(PipelineFaults, finishSettlesWhatWaits) {
   EXPECT_EQ(counts.clouds_in, counts.clouds_labeled + counts.dropped.total());
 }
 
-TEST(PipelineFaults, configureRefusesFaultsAndRebuildsOnlyForTheGrid) {
+TEST(PipelineFaults, ConfigureRefusesFaultsAndRebuildsOnlyForTheGrid) {
   PipelineRig rig(smallPaperConfig());
   drive(rig, 100.0, 2);
   Config config = smallPaperConfig();
@@ -247,7 +247,7 @@ TEST(PipelineFaults, configureRefusesFaultsAndRebuildsOnlyForTheGrid) {
   EXPECT_EQ(rig.labeled[21].labels.dynamic, kNone) << "first scan of the new grid";
 }
 
-TEST(PipelineFaults, everyCloudIsAccountedForUnderRandomFaults) {
+TEST(PipelineFaults, EveryCloudIsAccountedForUnderRandomFaults) {
   std::mt19937 random(5);
   const auto chance = [&](double probability) {
     return std::uniform_real_distribution<double>(0.0, 1.0)(random) < probability;

@@ -90,14 +90,14 @@ class ReconfigureTest : public ManagerTest {
   ros::Subscriber markers_;
 };
 
-TEST_F(ReconfigureTest, badParametersKeepItFromLoading) {
+TEST_F(ReconfigureTest, BadParametersKeepItFromLoading) {
   ros::param::set(nodeName() + "/voxel_size", "small");
   EXPECT_FALSE(tryLoad());
   ros::param::set(nodeName() + "/voxel_size", 0.3);
   EXPECT_TRUE(tryLoad());
 }
 
-TEST_F(ReconfigureTest, refusedValuesLeaveTheOldOnes) {
+TEST_F(ReconfigureTest, RefusedValuesLeaveTheOldOnes) {
   load();
   EXPECT_EQ(numberIn(changeNumber("voxel_size", 0.4), "voxel_size"), 0.4);
   EXPECT_EQ(numberIn(changeNumber("voxel_size", 5.0), "voxel_size"), 0.4) << "neither taken nor bent into range";
@@ -110,7 +110,7 @@ TEST_F(ReconfigureTest, refusedValuesLeaveTheOldOnes) {
   EXPECT_EQ(on_server, 0.4);
 }
 
-TEST_F(ReconfigureTest, changesWhileDataFlowsLoseNoScan) {
+TEST_F(ReconfigureTest, ChangesWhileDataFlowsLoseNoScan) {
   load();
   constexpr int kScans = 150;
   for (int i = 0; i < kScans; ++i) {
@@ -131,7 +131,7 @@ TEST_F(ReconfigureTest, changesWhileDataFlowsLoseNoScan) {
   EXPECT_EQ(diagnostic("clouds dropped"), "0");
 }
 
-TEST_F(ReconfigureTest, markersComeAndGo) {
+TEST_F(ReconfigureTest, MarkersComeAndGo) {
   load();
   watchMarkers();
   send(100.0);
@@ -146,7 +146,7 @@ TEST_F(ReconfigureTest, markersComeAndGo) {
 }
 
 /// A grid that scrolls holds the region however the vehicle turns.
-TEST_F(ReconfigureTest, aNewRegionShowsWithTheNextScan) {
+TEST_F(ReconfigureTest, ANewRegionShowsWithTheNextScan) {
   load();
   watchMarkers();
   send(100.0);
@@ -156,7 +156,7 @@ TEST_F(ReconfigureTest, aNewRegionShowsWithTheNextScan) {
   expectFront(100.1, std::hypot(25.0, 15.0));
 }
 
-TEST_F(ReconfigureTest, aNewRegionOfAGridThatTurnsWithTheVehicleShowsWithTheNextScan) {
+TEST_F(ReconfigureTest, ANewRegionOfAGridThatTurnsWithTheVehicleShowsWithTheNextScan) {
   usePapersRule(nodeName());
   ros::param::set(nodeName() + "/compensation", "resample");
   load();
@@ -168,7 +168,7 @@ TEST_F(ReconfigureTest, aNewRegionOfAGridThatTurnsWithTheVehicleShowsWithTheNext
   expectFront(100.1, 9.0);
 }
 
-TEST_F(ReconfigureTest, aNewVoxelSizeShowsInTheCells) {
+TEST_F(ReconfigureTest, ANewVoxelSizeShowsInTheCells) {
   usePapersRule(nodeName());
   load();
   watchMarkers();

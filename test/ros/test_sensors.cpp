@@ -92,14 +92,14 @@ void expectStraightened(const std::vector<Eigen::Vector3f>& echoes) {
   EXPECT_LT(worst, 1e-4) << "[m]; without de-skewing it is " << kSpeed * kTurn;
 }
 
-TEST(Sensors, everyFileIsTriedWithItsDriver) {
+TEST(Sensors, EveryFileIsTriedWithItsDriver) {
   std::set<std::string> files, tried;
   for (const auto& entry : std::filesystem::directory_iterator(kSensors)) files.insert(entry.path().stem());
   for (const auto& [sensor, driver] : kDriverOf) tried.insert(sensor);
   EXPECT_EQ(files, tried);
 }
 
-TEST(Sensors, scansAreStraightened) {
+TEST(Sensors, ScansAreStraightened) {
   for (const auto& [sensor, name] : kDriverOf) {
     SCOPED_TRACE(sensor + ", " + name);
     const DriverCloud& driver = test::driverNamed(name);
@@ -113,7 +113,7 @@ TEST(Sensors, scansAreStraightened) {
   }
 }
 
-TEST(Sensors, theDriversBytesAndFieldsAreKept) {
+TEST(Sensors, TheDriversBytesAndFieldsAreKept) {
   for (const DriverCloud& driver : test::driverClouds()) {
     SCOPED_TRACE(driver.driver);
     const auto cloud = distortedScan(driver);
@@ -135,7 +135,7 @@ TEST(Sensors, theDriversBytesAndFieldsAreKept) {
   }
 }
 
-TEST(Sensors, aDriverWithoutTimesIsToldOf) {
+TEST(Sensors, ADriverWithoutTimesIsToldOf) {
   PipelineRig rig(configFor("rs16"));
   rig.odometry(100.0);
   rig.cloud(100.0);
@@ -181,7 +181,7 @@ test::Labeled lastOfMergedScans(const CloudConfig& cloud) {
   return rig.labeled.back();
 }
 
-TEST(Sensors, linesOfSightBeginAtTheConfiguredOrigin) {
+TEST(Sensors, LinesOfSightBeginAtTheConfiguredOrigin) {
   CloudConfig cloud;
   cloud.origin_y = kNamedOrigin;
   const test::Labeled scan = lastOfMergedScans(cloud);
@@ -192,14 +192,14 @@ TEST(Sensors, linesOfSightBeginAtTheConfiguredOrigin) {
   EXPECT_EQ(scan.labels.observed.back(), 1) << "the sensor saw past the wall";
 }
 
-TEST(Sensors, linesOfSightBeginInTheFramesOriginUnlessToldOtherwise) {
+TEST(Sensors, LinesOfSightBeginInTheFramesOriginUnlessToldOtherwise) {
   const test::Labeled scan = lastOfMergedScans({});
   EXPECT_EQ(*(scan.labels.observed.end() - 2), 1) << "from there it is in front of what is far";
   EXPECT_EQ(scan.labels.observed.back(), 0) << "from there nobody looked past it";
 }
 
 /// Several LiDARs on one topic: each cloud's lines of sight begin where its own frame is.
-TEST(Sensors, eachCloudHasTheOriginOfItsFrame) {
+TEST(Sensors, EachCloudHasTheOriginOfItsFrame) {
   PipelineRig rig(test::smallConfig(), false);
   rig.tf.setTransform(test::transformAt(0.0, "base_link", "left", 1.0, 1.7), "test", true);
   rig.tf.setTransform(test::transformAt(0.0, "base_link", "right", -1.0, 1.9), "test", true);

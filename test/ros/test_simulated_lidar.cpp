@@ -49,7 +49,7 @@ class SimulatedLidarTest : public testing::Test {
   std::vector<nav_msgs::OdometryConstPtr> samples_;
 };
 
-TEST_F(SimulatedLidarTest, sendsCloudsAndOdometryInTheirOwnRhythms) {
+TEST_F(SimulatedLidarTest, SendsCloudsAndOdometryInTheirOwnRhythms) {
   const SimulatedLidar lidar(nh_, pnh_);
   ASSERT_TRUE(waitFor([this] { return received_.size() >= 12 && samples_.size() >= 60; }, 60.0));
   for (std::size_t i = 1; i < received_.size(); ++i) {
@@ -66,7 +66,7 @@ TEST_F(SimulatedLidarTest, sendsCloudsAndOdometryInTheirOwnRhythms) {
   }
 }
 
-TEST_F(SimulatedLidarTest, tellsTheMountingAndTheMotionByTf) {
+TEST_F(SimulatedLidarTest, TellsTheMountingAndTheMotionByTf) {
   tf2_ros::Buffer buffer;
   const tf2_ros::TransformListener listener(buffer);
   const SimulatedLidar lidar(nh_, pnh_);
@@ -75,7 +75,7 @@ TEST_F(SimulatedLidarTest, tellsTheMountingAndTheMotionByTf) {
   EXPECT_NEAR(buffer.lookupTransform("base_link", "velodyne", ros::Time(0)).transform.translation.z, 1.73, 1e-6);
 }
 
-TEST_F(SimulatedLidarTest, tellsTheMountingAgainToWhomTheLatchedMessagePassedBy) {
+TEST_F(SimulatedLidarTest, TellsTheMountingAgainToWhomTheLatchedMessagePassedBy) {
   std::size_t told = 0;
   const boost::function<void(const tf2_msgs::TFMessageConstPtr&)> count = [&](const auto& message) {
     ASSERT_EQ(message->transforms.size(), 1U);
@@ -87,7 +87,7 @@ TEST_F(SimulatedLidarTest, tellsTheMountingAgainToWhomTheLatchedMessagePassedBy)
   EXPECT_TRUE(waitFor([&] { return told >= 3; }, 60.0)) << told;
 }
 
-TEST_F(SimulatedLidarTest, endsWithItsDuration) {
+TEST_F(SimulatedLidarTest, EndsWithItsDuration) {
   pnh_.setParam("duration", 0.5);
   const SimulatedLidar lidar(nh_, pnh_);
   ASSERT_TRUE(waitFor([this] { return received_.size() == 5; }, 60.0));
@@ -96,7 +96,7 @@ TEST_F(SimulatedLidarTest, endsWithItsDuration) {
   EXPECT_EQ(received_.size(), 5U);
 }
 
-TEST_F(SimulatedLidarTest, mayEndAtAnyMoment) {
+TEST_F(SimulatedLidarTest, MayEndAtAnyMoment) {
   for (int i = 0; i < 3; ++i) {
     const std::size_t before = received_.size();
     const auto lidar = std::make_unique<SimulatedLidar>(nh_, pnh_);
@@ -104,7 +104,7 @@ TEST_F(SimulatedLidarTest, mayEndAtAnyMoment) {
   }
 }
 
-TEST_F(SimulatedLidarTest, namesEveryFaultOfItsParameters) {
+TEST_F(SimulatedLidarTest, NamesEveryFaultOfItsParameters) {
   pnh_.setParam("scene", "strret");
   pnh_.setParam("beams", 17);
   pnh_.setParam("dropout", "much");
@@ -114,7 +114,7 @@ TEST_F(SimulatedLidarTest, namesEveryFaultOfItsParameters) {
 }
 
 /// In one manager with the classifier, which gets the very messages that were published.
-TEST_F(SimulatedLidarTest, feedsTheClassifierInOneManager) {
+TEST_F(SimulatedLidarTest, FeedsTheClassifierInOneManager) {
   nodelet::Loader manager(false);
   const std::string space = nh_.getNamespace();
   ros::param::del(space + "/donex");

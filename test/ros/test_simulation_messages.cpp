@@ -20,7 +20,7 @@ SimulatedScan scanOf(bool distortion, double start_stamp) {
   return scan;
 }
 
-TEST(SimulationMessages, aDistortedScanHasItsTimes) {
+TEST(SimulationMessages, ADistortedScanHasItsTimes) {
   const SimulatedScan scan = scanOf(true, 5.0);
   const auto cloud = toCloud(scan, {});
   EXPECT_EQ(cloud->header.stamp.toSec(), 5.1);
@@ -37,7 +37,7 @@ TEST(SimulationMessages, aDistortedScanHasItsTimes) {
   }
 }
 
-TEST(SimulationMessages, odometryOfEveryStart) {
+TEST(SimulationMessages, OdometryOfEveryStart) {
   for (const double start : {1.0, 5.0, 1.7e9}) {
     for (const OdometrySample& sample : scanOf(true, start).odometry) {
       const auto odometry = toOdometry(sample, {});
@@ -49,7 +49,7 @@ TEST(SimulationMessages, odometryOfEveryStart) {
   }
 }
 
-TEST(SimulationMessages, thereIsNoRosTimeBeforeTheEpoch) {
+TEST(SimulationMessages, ThereIsNoRosTimeBeforeTheEpoch) {
   const SimulatedScan scan = scanOf(false, 0.0);
   ASSERT_LT(scan.odometry.front().stamp, 0.0) << "odometry begins before the scene does";
   EXPECT_THROW(toOdometry(scan.odometry.front(), {}), std::runtime_error);

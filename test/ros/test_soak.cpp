@@ -115,7 +115,7 @@ void printCounts(const PipelineCounts& counts) {
   }
 }
 
-TEST(Soak, everyScanIsAccountedForAndMemoryStaysFlat) {
+TEST(Soak, EveryScanIsAccountedForAndMemoryStaysFlat) {
   const std::size_t scans = test::soakScans(500);
   Soak soak(scans);
   soak.run();

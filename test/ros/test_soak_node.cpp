@@ -80,7 +80,7 @@ class SoakOfNode : public test::FaultsTest {
   test::MemoryWatch memory_;
 };
 
-TEST_F(SoakOfNode, everyScanIsAccountedForAndMemoryStaysFlat) {
+TEST_F(SoakOfNode, EveryScanIsAccountedForAndMemoryStaysFlat) {
   const std::size_t scans = test::soakScans(300);
   load();
   driveWell();

@@ -33,7 +33,7 @@ class ZeroCopy : public test::ManagerTest {
   std::vector<sensor_msgs::PointCloud2ConstPtr> second_received_;
 };
 
-TEST_F(ZeroCopy, theNodeletHoldsThePublishersOwnObject) {
+TEST_F(ZeroCopy, TheNodeletHoldsThePublishersOwnObject) {
   const sensor_msgs::PointCloud2ConstPtr cloud = oddCloud(100.0, 1);
   clouds_.publish(cloud);
   ASSERT_TRUE(waitForDiagnostic("clouds waiting", "1"));
@@ -43,7 +43,7 @@ TEST_F(ZeroCopy, theNodeletHoldsThePublishersOwnObject) {
   EXPECT_TRUE(waitFor([&] { return cloud.use_count() == 1; })) << "and it is let go";
 }
 
-TEST_F(ZeroCopy, oneAllocationAScanAndEveryoneGetsIt) {
+TEST_F(ZeroCopy, OneAllocationAScanAndEveryoneGetsIt) {
   // The first scans bring every buffer to its size.
   for (std::uint32_t i = 0; i < 3; ++i) {
     sendOdometry(100.0 + 0.1 * i);
