@@ -122,7 +122,7 @@ std::uint64_t BagCheck::checkIndex(std::uint64_t at, const Positions& messages) 
 /// Where the messages of a chunk begin in its content, and the connections before them: the library passes over a
 /// connection to the message behind it.
 Positions BagCheck::messagesIn(const Record& chunk) {
-  constexpr std::uint32_t kMost = 1U << 30U;  // a scan of the densest sensor is a hundredth
+  constexpr std::uint32_t kMost = 1U << 30U;  // a scan of the densest sensor takes a hundredth of it
   const auto size = requireNumber<std::uint32_t>(chunk, "size");
   if (std::max(size, chunk.data_size) > kMost) fail(chunk.begin, fmt::format("a chunk of {} bytes", size));
   if (chunk.text("compression") == "none") {
@@ -137,7 +137,7 @@ Positions BagCheck::messagesIn(const Record& chunk) {
 
 Positions BagCheck::messagesIn(const RecordSource& source, std::uint64_t chunk) {
   Positions records;
-  std::size_t with_message = 0;  // what comes behind the last message leads to none
+  std::size_t with_message = 0;  // records behind the last message lead to none
   for (std::uint64_t at = 0; at < source.size;) {
     const auto record = bag::readRecord(source, at);
     if (!record) fail(chunk, fmt::format("a chunk whose content is no record at {}", at));

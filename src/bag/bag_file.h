@@ -16,7 +16,7 @@ namespace donex {
 void openBag(const std::filesystem::path& file, rosbag::Bag& bag);
 
 /// How the chunks of a bag are compressed (the first one speaks for all); not at all where there is no chunk.
-/// The rosbag library tells this of no bag it reads. `file` must be a bag.
+/// The rosbag library does not tell this of a bag that it reads. `file` must be a bag.
 rosbag::CompressionType compressionOf(const std::filesystem::path& file);
 
 /// "none", "lz4" or "bz2"; throws std::invalid_argument for another text.
@@ -26,8 +26,8 @@ rosbag::CompressionType parseCompression(const std::string& name);
 /// listeners learn the mounting.
 boost::shared_ptr<ros::M_string> latchedTransforms();
 
-/// Writes a bag under a temporary name beside its own; commit() gives it its own name. Never half a bag. What goes
-/// wrong is told with the name of the file.
+/// Writes a bag under a temporary name beside its own; commit() gives it its own name. Never half a bag. Errors
+/// name the file.
 class BagWriter {
  public:
   /// A new bag. Throws DataError when the file cannot be created.

@@ -5,7 +5,7 @@ namespace {
 
 using Length = std::uint32_t;
 
-/// None where it does not lie within the source.
+/// Empty where it does not lie within the source.
 std::optional<Length> readLength(const RecordSource& source, std::uint64_t at) {
   Length length = 0;
   if (at > source.size || source.size - at < sizeof(length)) return std::nullopt;

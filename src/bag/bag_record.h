@@ -37,7 +37,7 @@ struct Record {
     const auto field = fields.find(name);
     return field == fields.end() ? std::string() : field->second;
   }
-  /// None where there is no such field, or one of another size.
+  /// Empty where there is no such field, or one of another size.
   template <class Number>
   std::optional<Number> number(const std::string& name) const {
     return numberIn<Number>(text(name));
@@ -50,10 +50,10 @@ struct RecordSource {
   std::function<void(std::uint64_t at, char* to, std::size_t count)> read;
 };
 
-/// The fields of a header; none where their lengths don't add up.
+/// The fields of a header; empty where their lengths don't add up.
 std::optional<std::map<std::string, std::string>> parseFields(const std::string& header);
 
-/// The record that begins at `at`; none where it does not lie wholly within the source.
+/// The record that begins at `at`; empty where it does not lie wholly within the source.
 std::optional<Record> readRecord(const RecordSource& source, std::uint64_t at);
 
 }  // namespace donex::bag

@@ -15,8 +15,8 @@
 
 namespace donex {
 
-/// Takes a count from the stream. Throws StreamOverrunException when so many elements of at least `bytes` are not
-/// there.
+/// Takes a count from the stream. Throws StreamOverrunException when the stream is too short for so many elements of
+/// at least `bytes`.
 inline std::uint32_t takeCount(ros::serialization::IStream& stream, std::uint32_t bytes) {
   std::uint32_t count = 0;
   stream.next(count);
@@ -24,7 +24,7 @@ inline std::uint32_t takeCount(ros::serialization::IStream& stream, std::uint32_
   return count;
 }
 
-/// Throws StreamOverrunException when the message has not as much as it claims to have.
+/// Throws StreamOverrunException when the message is shorter than it claims.
 template <class Message>
 void requireClaims(ros::serialization::IStream /*stream*/, const Message&) {}
 

@@ -31,13 +31,13 @@ struct LabelBagSummary {
   std::vector<std::string> remarks;  ///< why data were dropped, refused or forgotten: the first of each kind
 };
 
-/// `progress` hears how many of how many messages are done.
+/// `progress` is called with the number of messages done and of all.
 using LabelBagProgress = std::function<void(std::size_t done, std::size_t total)>;
 
 /// Bags that follow one another in time: the parts of one recording, most often only one.
 using BagParts = std::vector<std::filesystem::path>;
 
-/// Hears of every labelled cloud: the time of the message that completed it, and the part that holds this message.
+/// Called for every labelled cloud: the time of the message that completed it, and the part that holds this message.
 /// What it throws is handed on as it is.
 using LabelBagSink = std::function<void(const LabeledScan& scan, const ros::Time& now, std::size_t part)>;
 

@@ -42,7 +42,7 @@ struct ScoredPrediction {
   std::filesystem::path directory;
   Evaluation evaluation;
   std::optional<RunFigures> figures;
-  Faults faults;  ///< scans whose file is missing or has another number of labels: left out, nothing is guessed
+  Faults faults;  ///< scans whose file is missing or has another number of labels: left out
 };
 
 struct SequenceComparison {

@@ -29,7 +29,7 @@ std::string base64(const std::uint8_t* bytes, std::size_t size) {
   return text;
 }
 
-/// A ratio of nothing is null.
+/// A ratio without a denominator is null.
 json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 json countsOf(const Counts& counts) {
@@ -43,7 +43,7 @@ json objectsOf(const ObjectCounts& objects) {
   return {{"found", objects.found}, {"all", objects.all}, {"recall", number(objects.recall())}};
 }
 
-/// Where nothing was measured, 0 would be a lie.
+/// Null where nothing was measured: 0 would be false.
 template <class Figure>
 json measured(Figure value) {
   return value == 0 ? json(nullptr) : json(value);
@@ -146,7 +146,7 @@ json documentOf(const Comparison& comparison, bool with_views) {
           {"table_1", table1Of(comparison)}};
 }
 
-/// Names of files may hold what is no UTF-8.
+/// Names of files need not be valid UTF-8.
 std::string textOf(const json& document, int indent = -1) {
   return document.dump(indent, ' ', false, json::error_handler_t::replace);
 }

@@ -45,7 +45,7 @@ inline constexpr std::array<double, 4> kSpeedBandEnds{1.0, 3.0, 8.0, 15.0};
 std::size_t speedBand(double speed);
 std::string speedBandName(std::size_t band);
 
-/// Things, not echoes: a moving instance in a scan is found when at least half of its scored echoes are called
+/// Objects, not echoes: a moving instance in a scan is found when at least half of its scored echoes are called
 /// moving. Those with fewer scored echoes than kLeastEchoes are not counted.
 struct ObjectCounts {
   std::uint64_t found = 0;
@@ -63,7 +63,7 @@ class Evaluation {
   bool scores(std::size_t scan_index) const { return scan_index >= rules_.first_scan; }
 
   /// Adds a scan: echoes in the sensor frame, SemanticKITTI labels of truth and prediction. A scan before
-  /// first_scan is ignored. Throws std::invalid_argument when the three differ in number: nothing is guessed.
+  /// first_scan is ignored. Throws std::invalid_argument when the three differ in number.
   void add(std::size_t scan_index, const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint32_t>& truth,
            const std::vector<std::uint32_t>& prediction);
 
@@ -73,7 +73,7 @@ class Evaluation {
            const std::vector<std::uint32_t>& prediction, const SpeedOf& speed_of);
 
   std::size_t scans() const { return scans_; }
-  /// False moving objects (phantoms.h), and how many a scan has on average; NaN without scans.
+  /// False moving objects (phantoms.h), and their mean per scan; NaN without scans.
   std::size_t phantoms() const { return phantoms_; }
   double phantomsPerScan() const;
   const Counts& total() const { return total_; }
@@ -81,7 +81,8 @@ class Evaluation {
   const std::map<std::uint32_t, Counts>& byClass() const { return by_class_; }
   /// By band of kRangeBand.
   const std::vector<Counts>& byRange() const { return by_range_; }
-  /// Moving instances by band of speed (kSpeedBandEnds): only their hits and misses; instances without a speed in none.
+  /// Moving instances by band of speed (kSpeedBandEnds): only their hits and misses; instances without a speed are left
+  /// out.
   const std::array<Counts, kSpeedBandEnds.size() + 1>& bySpeed() const { return by_speed_; }
   /// Moving instances, once per scan, and by true class.
   const ObjectCounts& objects() const { return objects_; }
@@ -105,12 +106,12 @@ class Evaluation {
 /// SemanticKITTI's name of a class ("moving car"), or "class N".
 std::string className(std::uint32_t label);
 
-/// What a prediction took to make, where that is known.
+/// What making a prediction took, where that is known.
 struct RunFigures {
   std::string method;  ///< and its settings, in words
   std::size_t scans = 0;
-  double median_time = 0.0, p99_time = 0.0, median_cpu_time = 0.0;  ///< a scan [s]; CPU 0: not measured
-  double mean_cpu_time = 0.0;                                       ///< a scan, all passes [s]; 0: not measured
+  double median_time = 0.0, p99_time = 0.0, median_cpu_time = 0.0;  ///< per scan [s]; CPU 0: not measured
+  double mean_cpu_time = 0.0;                                       ///< per scan, all passes [s]; 0: not measured
   std::size_t peak_memory = 0, method_memory = 0;  ///< of the process, of the method alone (0: not known) [bytes]
 };
 

@@ -143,7 +143,7 @@ std::string rangeTable(const std::vector<NamedEvaluation>& columns) {
   return formatRows(rows);
 }
 
-/// Recall of moving instances by their speed; nothing where the labels have none.
+/// Recall of moving instances by their speed; no row where the labels have no instances.
 std::string speedTable(const std::vector<NamedEvaluation>& columns) {
   std::vector<std::vector<std::string>> rows{header("recall of moving instances, by speed", columns)};
   for (std::size_t band = 0; band <= kSpeedBandEnds.size(); ++band) {

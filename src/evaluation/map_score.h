@@ -1,4 +1,4 @@
-// How well a map keeps what stands and leaves out what moves.
+// How well a map keeps static echoes and leaves out moving ones.
 #pragma once
 
 #include <cstdint>

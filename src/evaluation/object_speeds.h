@@ -26,8 +26,8 @@ class ObjectSpeeds {
   void add(double stamp, const Pose& odom_from_sensor, const std::vector<Eigen::Vector3f>& echoes,
            const std::vector<std::uint32_t>& labels);
 
-  /// Speed [m/s] of what has this label at a stamp: from its first to its last centre within kReach before and after.
-  /// Nothing for instance 0, one seen in only one scan, or a stamp at which it was not seen.
+  /// Speed [m/s] of the object with this label at a stamp: from its first to its last centre within kReach before and
+  /// after. Empty for instance 0, an instance seen in only one scan, or a stamp at which it was not seen.
   std::optional<double> at(std::uint32_t label, double stamp) const;
 
   static constexpr double kReach = 0.55;  ///< [s]

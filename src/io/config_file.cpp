@@ -31,7 +31,7 @@ Settings readMap(const YAML::Node& map, const std::string& source, Faults& fault
   return settings;
 }
 
-/// Counts documents, and looks at nothing in them.
+/// Counts documents, without reading them.
 class DocumentCounter : public YAML::EventHandler {
  public:
   void OnDocumentStart(const YAML::Mark&) override { ++documents; }
@@ -57,7 +57,7 @@ bool holdsSeveralDocuments(const std::string& text) {
   return counter.documents > 1;
 }
 
-/// Null where there is nothing but comments.
+/// Null where the text holds only comments.
 YAML::Node parseFile(const std::string& text, const std::string& source) {
   try {
     if (holdsSeveralDocuments(text)) throw DataError(source + ": holds more than one YAML document");

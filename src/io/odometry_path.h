@@ -1,4 +1,4 @@
-// Odometry in a rhythm of its own along the poses of scans.
+// Odometry at a rate of its own along the poses of scans.
 #pragma once
 
 #include <vector>

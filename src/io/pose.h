@@ -24,7 +24,7 @@ Pose interpolate(const Pose& from, const Pose& to, double fraction);
 
 using PoseMatrix = Eigen::Matrix<double, 3, 4>;
 
-/// Why the 3x4 matrix is no rigid transform (non-finite, not orthonormal within 1e-3, mirrored); nothing when it is
+/// Why the 3x4 matrix is not a rigid transform (non-finite, not orthonormal within 1e-3, mirrored); empty where it is
 /// one.
 std::optional<std::string> faultOfPose(const PoseMatrix& matrix);
 

@@ -21,7 +21,7 @@ inline std::uint32_t classOfLabel(std::uint32_t label) { return label & 0xFFFFu;
 inline bool isMoving(std::uint32_t label) { return classOfLabel(label) > 250; }
 inline bool isScored(std::uint32_t label) { return classOfLabel(label) > 1; }
 
-/// One scan as the layout holds it: what it has beside the echoes is small.
+/// One scan as the layout holds it.
 struct SequenceScan {
   double stamp = 0.0;                   ///< [s], whole nanoseconds
   std::vector<Eigen::Vector3f> echoes;  ///< sensor frame [m]; non-finite ones are kept
@@ -39,7 +39,7 @@ std::string scanName(std::size_t index);
 class SequenceReader {
  public:
   /// Throws DataError with every fault: a missing or empty directory, gaps in the numbering, sizes that are
-  /// no multiple of an echo, lines that are no rigid pose or no later time, fewer poses or times than
+  /// not a multiple of an echo, lines without a rigid pose or a later time, fewer poses or times than
   /// scans, labels that don't belong to a scan or differ in number from its echoes.
   explicit SequenceReader(std::filesystem::path directory);
 

@@ -16,7 +16,7 @@
 namespace donex {
 
 /// Voxels keep the mean of their points. They are held by square tiles of the ground plan; where they need more than
-/// `memory_limit`, tiles far from the vehicle are put away into files beside the output, and come together when the
+/// `memory_limit`, tiles far from the vehicle are put away into files beside the output, and read back when the
 /// map is written. What remains in memory at any time: that limit and one tile.
 class StaticMap {
  public:

@@ -19,10 +19,10 @@ class WholeFile {
   WholeFile(const WholeFile&) = delete;
   WholeFile& operator=(const WholeFile&) = delete;
 
-  /// Binary. What goes wrong here is told by commit().
+  /// Binary. Errors are reported by commit().
   std::ofstream& stream() { return stream_; }
 
-  /// Gives it its own name, over a file that has it. Throws DataError when it could not be written to the end.
+  /// Gives it its own name, replacing a file of that name. Throws DataError when it could not be written to the end.
   void commit();
 
  private:

@@ -14,7 +14,7 @@ class SimulatedLidarNodelet : public nodelet::Nodelet {
     try {
       lidar_ = std::make_unique<SimulatedLidar>(getNodeHandle(), getPrivateNodeHandle());
     } catch (const std::exception& error) {
-      // The manager swallows what is thrown here and only says that loading failed.
+      // The manager swallows exceptions and only says that loading failed.
       NODELET_FATAL("%s", error.what());
       throw;
     }

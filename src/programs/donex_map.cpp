@@ -28,7 +28,7 @@ struct Arguments {
   std::string points, odom;
 };
 
-/// In percent; "-" where there was nothing to rate.
+/// In percent; "-" where there is no figure.
 std::string percent(double rate) { return std::isnan(rate) ? "-" : fmt::format("{:.2f} %", 100.0 * rate); }
 
 /// Takes the static echoes of scans into the map, and scores what it took where the truth is known.

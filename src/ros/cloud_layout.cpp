@@ -68,7 +68,7 @@ MaybeError judgeExtent(const PointCloud2& cloud) {
   if (cloud.point_step == 0) {
     return fault(LayoutFault::kZeroPointStep, "point_step is 0 in a cloud of ", cloud.width, " x ", cloud.height);
   }
-  // 32 bit times 32 bit fits 64 bit: none of this can overflow.
+  // 32 bit times 32 bit fits 64 bit: no overflow here.
   const std::uint64_t row = std::uint64_t{cloud.width} * cloud.point_step;
   if (cloud.row_step < row) {
     return fault(LayoutFault::kRowTooShort, "row_step is ", cloud.row_step, ", but a row of ", cloud.width,

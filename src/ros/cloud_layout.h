@@ -15,8 +15,8 @@ namespace donex {
 
 /// Why a cloud cannot be read.
 enum class LayoutFault {
-  kMissingField,      ///< x, y or z is not there
-  kWrongDatatype,     ///< x, y or z is neither FLOAT32 nor FLOAT64, or `dynamic`/`observed` is there and not UINT8
+  kMissingField,      ///< x, y or z is missing
+  kWrongDatatype,     ///< x, y or z is neither FLOAT32 nor FLOAT64, or `dynamic`/`observed` is present and not UINT8
   kZeroPointStep,     ///< echoes without bytes
   kFieldBeyondPoint,  ///< a field that is read or written ends behind its point
   kRowTooShort,       ///< row_step cannot hold width points
@@ -63,7 +63,7 @@ struct CloudLayout {
 
 using LayoutVerdict = std::variant<CloudLayout, LayoutError>;
 
-/// Judges the whole layout; allocates nothing in proportion to what the cloud claims. A cloud without
+/// Judges the whole layout; allocates no memory in proportion to what the cloud claims. A cloud without
 /// echoes is readable when its fields are (point_step and data do not matter then).
 LayoutVerdict judgeLayout(const sensor_msgs::PointCloud2& cloud, const CloudConfig& config = {});
 

@@ -58,7 +58,7 @@ void forEachPoint(const PointCloud2& cloud, const CloudLayout layout, Visit&& vi
   }
 }
 
-/// Ouster's and Livox' drivers write 0, 0, 0 where nothing came back: the sensor sees no echo in itself.
+/// Ouster's and Livox' drivers write 0, 0, 0 for a beam without an echo.
 Eigen::Vector3f echoOf(const Eigen::Vector3f& position) {
   const bool is_no_return = (position.array() == 0.0F).all();
   return is_no_return ? Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()) : position;
@@ -138,7 +138,7 @@ std::string strangeTimes(double time) {
   return text.str();
 }
 
-/// How long a point is, is known only when the program runs: std::memcpy would be a call for every one.
+/// The length of a point is known only at run time: std::memcpy would be a call for every one.
 void copyPoint(std::uint8_t* to, const std::uint8_t* from, std::size_t size) {
   constexpr std::size_t kChunk = 16;
   if (size < kChunk) {

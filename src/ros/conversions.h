@@ -13,7 +13,7 @@
 namespace donex {
 
 /// The echoes in the order of the cloud, row by row, in the cloud's frame [m]. Overwrites `echoes`. A point at
-/// exactly 0, 0, 0 is how drivers of organised clouds say that nothing came back: it becomes NaN.
+/// exactly 0, 0, 0 is how drivers of organised clouds mark a beam without an echo: it becomes NaN.
 void parseEchoes(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout,
                  std::vector<Eigen::Vector3f>& echoes);
 
@@ -21,7 +21,7 @@ void parseEchoes(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layou
 struct EchoTimes {
   std::vector<float> after_stamp;  ///< after the cloud's stamp [s], one per echo; negative before it
   double first = 0.0, last = 0.0;  ///< the span of the times of echoes with finite coordinates [s]
-  std::string problem;             ///< why the cloud's times cannot be used; empty where they can, or where it has none
+  std::string problem;  ///< why the cloud's times cannot be used; empty where they can, or where the cloud has no times
 
   bool empty() const { return after_stamp.empty(); }
   /// Keeps its memory.

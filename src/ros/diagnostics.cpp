@@ -13,11 +13,11 @@ using diagnostic_msgs::DiagnosticStatus;
 using diagnostic_updater::DiagnosticStatusWrapper;
 using Clock = Diagnostics::Clock;
 
-constexpr std::chrono::seconds kWindow{5};  // what "now" means in rates and times
+constexpr std::chrono::seconds kWindow{5};  // over which rates and times are taken
 
 double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
-/// Arrivals a second over the window.
+/// Arrivals per second over the window.
 double rateOf(const std::deque<Clock::time_point>& times) {
   if (times.size() < 2) return 0.0;
   const double span = seconds(times.back() - times.front());

@@ -1,4 +1,4 @@
-// One status an engineer understands on /diagnostics, driven by a wall clock so that silence shows, too.
+// One plain status on /diagnostics, driven by a wall clock so that silence shows, too.
 #pragma once
 
 #include <chrono>

@@ -58,7 +58,7 @@ class DonexNode::Implementation {
   PipelineEvents events();
   void publish(const LabeledScan& scan);
 
-  /// A throw out of a callback would end the whole manager.
+  /// An exception out of a callback would end the whole manager.
   template <class Function>
   void guarded(const char* where, Function&& function);
   void schedule();
@@ -91,7 +91,7 @@ DonexNode::Implementation::Implementation(const ros::NodeHandle& nh, const ros::
   ROS_INFO_STREAM_NAMED("donex", "memory that the grid takes for scans of "
                                      << kUsualScan << " echoes: " << std::lround(memoryBound(config_, kUsualScan) / 1e6)
                                      << " MB at most (memory_limit " << config_.memory_limit << " MB)");
-  // A sensor at rest asks tf nothing.
+  // A sensor at rest needs no tf.
   const bool needs_tf = config_.motion.source != OdometrySource::kNone;
   if (needs_tf) tf_listener_ = std::make_unique<tf2_ros::TransformListener>(tf_, nh_);
 

@@ -15,7 +15,7 @@ enum class DropReason {
   kOdometryGap,     ///< odometry is missing around its stamp
   kNoTransform,     ///< tf does not connect its frame with the vehicle's
   kOutOfOrder,      ///< older than a cloud that is labelled already
-  kDuplicate,       ///< as old as a cloud that is there already
+  kDuplicate,       ///< of the same stamp as another cloud
   kTimeRanBack,     ///< waiting when time ran back
   kInternalError,   ///< an exception
 };

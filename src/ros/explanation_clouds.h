@@ -1,4 +1,4 @@
-// Clouds for the eye: every echo in the colour of its label and with the reason for it; remembered cells.
+// Clouds to look at: every echo in the colour of its label and with the reason for it; remembered cells.
 #pragma once
 
 #include <vector>

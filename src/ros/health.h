@@ -1,4 +1,4 @@
-// One line that tells an engineer how the classifier is, from a few figures.
+// One line on the state of the classifier, from a few figures.
 #pragma once
 
 #include <cstddef>
@@ -7,13 +7,13 @@
 
 namespace donex {
 
-/// What the last seconds brought.
+/// Figures of the last seconds.
 struct Health {
   double labeled_rate = 0.0;     ///< [Hz]
-  double median_time = 0.0;      ///< a scan [s]
-  std::optional<double> silent;  ///< since the newest cloud [s]; nothing before the first
+  double median_time = 0.0;      ///< per scan [s]
+  std::optional<double> silent;  ///< since the newest cloud [s]; empty before the first
   bool needs_odometry = true;
-  std::optional<double> odometry_age;  ///< since the newest odometry [s]; nothing before the first
+  std::optional<double> odometry_age;  ///< since the newest odometry [s]; empty before the first
   std::size_t drops = 0;               ///< scans
   std::string last_drop;               ///< why, in a few words
   std::size_t waiting = 0;             ///< scans
@@ -26,7 +26,7 @@ struct HealthLine {
   std::string text;  ///< begins with the level: "OK: 9.9 Hz, 11 ms a scan"
 };
 
-/// Silence of this length is told [s].
+/// Silence of this length is reported [s].
 constexpr double kSilence = 1.0;
 
 HealthLine tell(const Health& health);

@@ -13,14 +13,14 @@
 
 namespace donex {
 
-/// Makes marker arrays of which every one replaces the one before: whatever is gone or switched off is deleted.
+/// Makes marker arrays, each of which replaces the one before: markers that are gone or switched off are deleted.
 class MarkerMaker {
  public:
   /// The markers of the detector's last scan that are switched on, in the odometry frame.
   visualization_msgs::MarkerArrayPtr make(const Detector& detector, const Config& config, const ros::Time& stamp,
                                           const std::string& odom_frame);
 
-  /// Deletes whatever is shown.
+  /// Deletes all that is shown.
   visualization_msgs::MarkerArrayPtr clear();
 
  private:

@@ -9,8 +9,8 @@
 
 namespace donex {
 
-/// The objects of the detector's last scan, taken at `stamp`, in the odometry frame. Empty where nothing moves: that,
-/// too, is news.
+/// The objects of the detector's last scan, taken at `stamp`, in the odometry frame. Also made, empty,
+/// where nothing moves.
 MovingObjectsPtr toMessage(const Detector& detector, const ros::Time& stamp, const std::string& odom_frame);
 
 }  // namespace donex

@@ -59,7 +59,7 @@ struct XmlRpcReader {
   void operator()(const ParameterInfo& info, double& out, double, double) {
     XmlRpcValue* value = find(info);
     if (value == nullptr) return;
-    // 50 is a number, too: YAML knows no other way to write it without a point.
+    // 50 is a number, too, although YAML reads it as an integer.
     if (value->getType() == XmlRpcValue::TypeInt) {
       out = static_cast<int&>(*value);
     } else if (expect(info, *value, XmlRpcValue::TypeDouble, "a number")) {

@@ -11,7 +11,7 @@
 namespace donex {
 namespace {
 
-/// The generated class without its clamping: a value out of range is to be refused, not bent into range silently.
+/// The generated class without its clamping: a value out of range is refused, not clamped silently.
 struct UnclampedConfig : DonexConfig {
   UnclampedConfig() = default;
   UnclampedConfig(const DonexConfig& config) : DonexConfig(config) {}

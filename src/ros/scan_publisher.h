@@ -1,4 +1,4 @@
-// Everything that is said of a labelled scan, the labels first.
+// Everything that is published of a labelled scan, the labels first.
 #pragma once
 
 #include <ros/node_handle.h>
@@ -9,13 +9,13 @@
 
 namespace donex {
 
-/// The node's topics. But for the labelled cloud nothing is made that nobody subscribed to.
+/// The node's topics. All but the labelled cloud is made only for subscribers.
 class ScanPublisher {
  public:
   /// Advertises private names.
   explicit ScanPublisher(ros::NodeHandle pnh);
 
-  /// On the way from cloud to labels: to be called before anything else is made of the scan.
+  /// The labelled cloud: to be called before all other outputs of the scan.
   void publishLabels(const LabeledScan& scan) const;
   void publishTheRest(const LabeledScan& scan, const Config& config);
 

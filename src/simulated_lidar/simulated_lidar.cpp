@@ -117,7 +117,7 @@ void SimulatedLidar::Implementation::run() {
   try {
     play();
   } catch (const std::exception& error) {
-    ROS_FATAL("simulated LiDAR: %s", error.what());  // a throw out of a thread would end the whole manager
+    ROS_FATAL("simulated LiDAR: %s", error.what());  // an exception out of a thread would end the whole manager
   }
 }
 
@@ -134,7 +134,7 @@ void SimulatedLidar::Implementation::play() {
 
   const auto measure = [this] { return std::async(std::launch::async, [this] { return nextTurn(); }); };
   auto coming = measure();
-  // roscpp can lose a latched message for him who subscribes at the very moment in which it is published: told again.
+  // roscpp can lose a latched message for a node that subscribes at the moment of publishing: it is sent again.
   constexpr double kTellAgain = 1.0;  // [s]
   double told = 0.0;
   while (const std::optional<Turn> turn = coming.get()) {
