@@ -1,4 +1,4 @@
-// One LiDAR scan as the core takes it, and what the core says of it.
+// One LiDAR scan as the core takes it, and its labels.
 #pragma once
 
 #include <cstdint>

@@ -21,7 +21,7 @@ enum class AddResult {
   kDuplicate,    ///< a sample with this stamp is there already: the first one stays
   kTooOld,       ///< late, and older than everything kept: ignored
   kTimeRanBack,  ///< older than the newest by more than the allowed disorder: ignored; the caller resets
-  kTrackLost,    ///< twist only: nobody knows the motion since the last sample; started anew with this one
+  kTrackLost,    ///< twist only: the motion since the last sample is unknown; started anew with this one
   kNonFinite,    ///< ignored
 };
 

@@ -6,7 +6,7 @@
 namespace donex {
 namespace {
 
-/// Bricks that there is room for from the beginning: memory that is not used is never touched, and none is ever moved.
+/// Bricks with room from the beginning: unused memory is never touched, and no brick is ever moved.
 double bricksFor(const Eigen::Vector3d& extent) { return (extent.head<2>() / GridWindow::kBrick).prod(); }
 
 }  // namespace

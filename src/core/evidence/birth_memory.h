@@ -30,9 +30,9 @@ class BirthMemory {
   /// Moves the memory to the vehicle's new pose; what leaves the window is forgotten.
   void shift(const Eigen::Isometry3d& odom_from_base);
 
-  /// Record of a voxel in the window, or nullptr where none is remembered.
+  /// Record of a voxel in the window, or nullptr where nothing is remembered.
   const VoxelRecord* find(const Index3& in_window) const;
-  /// Record of a voxel in the window, made where there is none. Valid until the next call.
+  /// Record of a voxel in the window, made where it is missing. Valid until the next call.
   VoxelRecord& at(const Index3& in_window);
 
   /// Calls visit(voxel in the window, record) for every voxel that is remembered.

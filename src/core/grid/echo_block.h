@@ -28,9 +28,9 @@ struct EchoBlock {
   template <class Number>
   using Row = std::array<Number, kSize>;
 
-  int none = 0;                    ///< how many of the entries are no echo
+  int none = 0;                    ///< how many of the entries are invalid
   int count = 0;                   ///< what is behind holds no echo: NaN, not inside
-  alignas(64) Row<float> x, y, z;  ///< [voxels]; NaN where the echo is none (non-finite, too far)
+  alignas(64) Row<float> x, y, z;  ///< [voxels]; NaN for invalid echoes (non-finite, too far)
   /// 1 inside the region of interest and the window, the echo hits the grid; else 0.
   alignas(64) Row<std::int32_t> inside;
   alignas(64) Row<std::uint8_t> observed;                   ///< the same as bytes

@@ -28,7 +28,7 @@ class Grid3d {
   void reset();
 
   const GridWindow& window() const { return window_; }
-  /// Numbers of the last scan's echoes that are none (non-finite, too far).
+  /// Numbers of the last scan's invalid echoes (non-finite, too far).
   std::vector<std::uint32_t> noEchoes() const { return noEchoesOf(parts_); }
   /// Voxels of the last scan's new echoes, in the window; a voxel may come more than once.
   std::vector<Index3> newVoxels() const { return newVoxelsOf(parts_); }

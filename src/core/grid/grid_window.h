@@ -11,7 +11,7 @@
 
 namespace donex {
 
-/// Echoes beyond this distance from the sensor [m] are no echoes: they are treated as non-finite ones.
+/// Echoes beyond this distance from the sensor [m] are invalid, like non-finite ones.
 constexpr float kFarthestEcho = 1000.0F;
 
 /// `i` of a window that wraps around after `n`; `i` is below 2 n.
@@ -26,7 +26,7 @@ double reachOf(const Region& region);
 /// A scan in the grid: what every method works on. All of it is in the grid's window, in voxel edge lengths.
 struct GridScan {
   Eigen::Vector3f origin = Eigen::Vector3f::Zero();  ///< sensor
-  /// One per echo, NaN where the echo is none (non-finite, or too far).
+  /// One per echo, NaN for invalid echoes (non-finite, or too far).
   std::vector<Eigen::Vector3f> echoes;
   /// One per echo: inside the region of interest and the window, the echo hits the grid. Others only see through it.
   std::vector<std::uint8_t> inside;

@@ -30,7 +30,7 @@ class TakenEchoes {
   void appendNewVoxels(std::vector<Index3>& voxels) const {
     voxels.insert(voxels.end(), new_voxels_.begin(), new_voxels_.begin() + static_cast<std::ptrdiff_t>(new_count_));
   }
-  /// Appends the numbers of the echoes that are none (non-finite, too far).
+  /// Appends the numbers of the invalid echoes (non-finite, too far).
   void appendNoEchoes(std::vector<std::uint32_t>& numbers) const {
     numbers.insert(numbers.end(), no_echoes_.begin(), no_echoes_.end());
   }
@@ -60,7 +60,7 @@ std::vector<Index3> newVoxelsOf(const std::vector<Part>& parts) {
   return voxels;
 }
 
-/// The same of the echoes that are none.
+/// The same of the invalid echoes.
 template <class Part>
 std::vector<std::uint32_t> noEchoesOf(const std::vector<Part>& parts) {
   std::vector<std::uint32_t> numbers;

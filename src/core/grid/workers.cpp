@@ -9,7 +9,7 @@
 namespace donex {
 
 struct Workers::Arena {
-  /// More threads than cores help nobody.
+  /// More threads than cores do not help.
   explicit Arena(int threads)
       : arena(std::min(threads, static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U)))) {}
   tbb::task_arena arena;

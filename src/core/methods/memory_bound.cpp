@@ -27,7 +27,7 @@ double paperBytes(const Config& config, double echoes) {
 }  // namespace
 
 double memoryBound(const Config& config, std::size_t echoes) {
-  constexpr double kLabels = 2.0;  // bytes an echo
+  constexpr double kLabels = 2.0;  // bytes per echo
   const auto count = static_cast<double>(echoes);
   if (config.isPaper()) return paperBytes(config, count) + kLabels * count;
   return config.hasEvidence() ? evidenceBytes(config, count) : comparisonBytes(config);

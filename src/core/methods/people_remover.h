@@ -1,4 +1,4 @@
-// Peopleremover: whatever a line of sight of the whole drive sees through is dynamic.
+// Peopleremover: all that a line of sight of the whole drive sees through is dynamic.
 #pragma once
 
 #include "donex/whole_drive.h"

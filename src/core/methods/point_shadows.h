@@ -16,7 +16,7 @@ class PointShadows {
  public:
   PointShadows(float diagonal, float fuzz) : diagonal_(diagonal), fuzz_(fuzz) {}
 
-  /// `echoes` in the sensor's frame [m]; those with `is_echo` 0 are left out. One entry an echo: how far its line of
+  /// `echoes` in the sensor's frame [m]; those with `is_echo` 0 are left out. One entry per echo: how far its line of
   /// sight may be followed [m], 0 for not at all.
   const std::vector<float>& cast(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo);
 

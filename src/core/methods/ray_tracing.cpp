@@ -30,7 +30,7 @@ float uncertaintyOf(const ScanMesh::Surface& surface) {
   return std::hypot(kRangeNoise, kBeam * surface.range * tangent);
 }
 
-/// What the mesh says of a point `range` away.
+/// The belief that the mesh gives for a point `range` away.
 MotionBelief beliefOf(const ScanMesh::Surface& surface, float range) {
   const double off = (range - surface.range) / (surface.is_edge ? kRangeNoise : uncertaintyOf(surface));
   const double on_surface = std::exp(-0.5 * off * off);

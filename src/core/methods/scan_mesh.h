@@ -20,7 +20,7 @@ class ScanMesh {
 
   /// What the mesh has in a direction.
   struct Surface {
-    bool is_edge = false;    ///< the triangle joins two things at different depths: there is no surface between them
+    bool is_edge = false;    ///< the triangle joins two surfaces at different depths: there is no surface between them
     float range = 0.0F;      ///< where the direction meets the triangle [m]; of an edge, its nearest corner
     float far_range = 0.0F;  ///< of an edge, its farthest corner [m]
     float cosine = 1.0F;     ///< of the angle between the direction and the triangle's normal

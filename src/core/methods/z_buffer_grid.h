@@ -8,7 +8,7 @@ namespace donex {
 
 /// The 3D grid whose see-through is asked of a z-buffer (after Hu & Li 2012, as the paper cites them): the scan is
 /// rendered into an image of nearest ranges, and a remembered voxel is see-through where the image shows a surface
-/// behind it. One look-up a voxel; a pixel that holds a nearer echo, or none, hides what a single line of sight
+/// behind it. One look-up per voxel; a pixel with a nearer echo, or without one, hides what a single line of sight
 /// between two pixels' echoes would have seen.
 class ZBufferGrid : public Grid3d {
  public:

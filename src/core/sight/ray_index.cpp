@@ -17,7 +17,7 @@ struct Projected {
   std::uint32_t* bin;
 };
 
-/// Echoes without a direction (none, or in the sensor itself) get the bin behind the last.
+/// Echoes without a direction (invalid, or in the sensor itself) get the bin behind the last.
 DONEX_WIDE_LOOPS void project(const Eigen::Vector3f& origin, float row_low, float per_up, const EchoBlock& block,
                               const Projected& to) {
   const float ox = origin.x(), oy = origin.y(), oz = origin.z();
