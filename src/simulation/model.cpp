@@ -154,7 +154,7 @@ Model makeVan(Random& random) {
 
 Model makeLorry(Random& random) {
   Model model;
-  model.thing = kLorry;
+  model.object_class = kLorry;
   const bool with_trailer = random.chance(0.5);
   const auto half_length = static_cast<float>(with_trailer ? random.uniform(7.5, 8.2) : random.uniform(3.8, 4.8));
   const float colour = paint(random);
@@ -176,7 +176,7 @@ Model makeLorry(Random& random) {
 
 Model makeBus(Random& random) {
   Model model;
-  model.thing = kBus;
+  model.object_class = kBus;
   const float colour = paint(random);
   auto& parts = model.parts;
   parts.push_back(box({-6.0f, -1.27f, 0.32f}, {6.0f, 1.27f, 1.2f}, colour));
@@ -189,7 +189,7 @@ Model makeBus(Random& random) {
 
 Model makePerson(Random& random) {
   Model model;
-  model.thing = kPerson;
+  model.object_class = kPerson;
   model.gait = Gait::kWalk;
   model.stature = random.chance(0.15) ? random.uniform(1.1, 1.4) : random.uniform(1.58, 1.9);
   const auto h = static_cast<float>(model.stature);
@@ -201,7 +201,7 @@ Model makePerson(Random& random) {
 
 Model makeCyclist(Random& random) {
   Model model;
-  model.thing = kCyclist;
+  model.object_class = kCyclist;
   model.gait = Gait::kPedal;
   const float colour = paint(random);
   auto& parts = model.parts;

@@ -12,15 +12,15 @@
 namespace donex::simulation {
 
 /// SemanticKITTI classes of an object at rest and in motion.
-struct ThingClass {
+struct ObjectClass {
   std::uint32_t at_rest;
   std::uint32_t moving;
 };
-inline constexpr ThingClass kCar{10, 252};
-inline constexpr ThingClass kCyclist{31, 253};
-inline constexpr ThingClass kPerson{30, 254};
-inline constexpr ThingClass kBus{13, 257};
-inline constexpr ThingClass kLorry{18, 258};
+inline constexpr ObjectClass kCar{10, 252};
+inline constexpr ObjectClass kCyclist{31, 253};
+inline constexpr ObjectClass kPerson{30, 254};
+inline constexpr ObjectClass kBus{13, 257};
+inline constexpr ObjectClass kLorry{18, 258};
 
 struct Part {
   Shape shape;  ///< in the model's axes
@@ -31,7 +31,7 @@ struct Part {
 enum class Gait : std::uint8_t { kNone, kWalk, kPedal };
 
 struct Model {
-  ThingClass thing = kCar;
+  ObjectClass object_class = kCar;
   std::vector<Part> parts;
   Gait gait = Gait::kNone;
   double stature = 1.0;  ///< scales the limbs

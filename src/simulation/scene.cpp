@@ -101,11 +101,11 @@ Eigen::Isometry3d poseOf(const Mover& mover, const Ground& ground, double time) 
 std::uint32_t labelOf(const Mover& mover, double time) {
   constexpr int kSteps = 10;
   const auto moves = [&](double when) { return std::abs(mover.course.groundSpeed(when)) > kMovingSpeed; };
-  if (moves(time)) return mover.model.thing.moving;
+  if (moves(time)) return mover.model.object_class.moving;
   for (int i = 1; i <= kSteps; ++i) {
     if (moves(time - kSettleTime * i / kSteps)) return 0;
   }
-  return mover.model.thing.at_rest;
+  return mover.model.object_class.at_rest;
 }
 
 Eigen::Isometry3d poseOf(const Ego& ego, const Ground& ground, double time) {

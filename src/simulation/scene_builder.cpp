@@ -106,7 +106,7 @@ void SceneBuilder::parked(const PathPoint& where, const Model& model) {
     fixture.center = pose * part.shape.center.cast<double>();
     fixture.shape = part.shape;
     fixture.shape.axes = pose.linear().cast<float>() * part.shape.axes;
-    fixture.label = model.thing.at_rest;
+    fixture.label = model.object_class.at_rest;
     fixture.reflectivity = part.reflectivity;
     scene_.fixtures.push_back(fixture);
   }

@@ -24,7 +24,7 @@ TEST_P(Models, HaveTheSizeOfTheirKindAndStandOnTheGround) {
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     Random random(seed);
     const Model model = kind.make(random);
-    EXPECT_EQ(model.thing.moving, kind.moving);
+    EXPECT_EQ(model.object_class.moving, kind.moving);
     const Eigen::AlignedBox3d box = model.box();
     EXPECT_GT(box.sizes().x(), kind.shortest);
     EXPECT_LT(box.sizes().x(), kind.longest);

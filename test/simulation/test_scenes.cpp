@@ -79,7 +79,7 @@ TEST_P(EveryScene, NobodyDrivesIntoTheEgoVehicle) {
       const Eigen::Vector2d apart = mover.course.at(time).position - middle;
       const double half_length = 2.2 + 0.5 * sizes[i].x();
       const bool beside = std::abs(apart.dot(ego.left())) > 0.9 + 0.4 * sizes[i].y();
-      EXPECT_TRUE(beside || apart.norm() > half_length) << mover.model.thing.moving << " at " << time;
+      EXPECT_TRUE(beside || apart.norm() > half_length) << mover.model.object_class.moving << " at " << time;
     }
   }
 }
