@@ -35,7 +35,7 @@ class GroundMap {
     return static_cast<double>(point.z()) - groundOf(*cell).height;
   }
 
-  /// Cells that took their own lowest echo, and cells with an echo that was none of the ground.
+  /// Cells that took their own lowest echo, and cells with an echo above the ground.
   int continued() const { return continued_; }
   int interrupted() const { return interrupted_; }
 

@@ -174,7 +174,7 @@ TEST(Ground, EchoesThatAreNoneAndEmptyScansTellNothing) {
   EXPECT_FALSE(std::isfinite(ground.heightOf({5.0F, 0.0F, 0.0F}))) << "the scan before is forgotten";
 }
 
-/// A rough world around a sensor somewhere: echoes of the ground, of things on it, of nothing, and none.
+/// A rough world around a sensor somewhere: echoes of the ground, of objects on it, stray ones, and invalid ones.
 struct RandomScan {
   explicit RandomScan(unsigned seed) {
     std::mt19937 random(seed);
