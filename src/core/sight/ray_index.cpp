@@ -1,6 +1,7 @@
 #include "core/sight/ray_index.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -112,13 +113,20 @@ void RayIndex::sortPart(std::size_t part) {
 }
 
 RayIndex::Rows RayIndex::rowsOfScan() const {
-  float low = kSteepest, high = -kSteepest;
+  // Behind them are those without a direction, which may be NaN. Lane by lane: what a library's minimum makes of NaN,
+  // and in which order it looks, does not matter then.
   const std::size_t with_direction = bins_of_part_.front().back().first;
-  if (with_direction != 0) {
-    const Eigen::Map<const Eigen::ArrayXf> ups(rays_.up.data(), static_cast<Eigen::Index>(with_direction));
-    low = std::min(low, ups.minCoeff());
-    high = std::max(high, ups.maxCoeff());
+  std::array<float, kLanes> lows, highs;
+  lows.fill(kSteepest);
+  highs.fill(-kSteepest);
+  for (std::size_t first = 0; first < with_direction; first += kLanes) {
+    const std::size_t lanes = std::min(with_direction - first, lows.size());
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      lows[lane] = std::min(lows[lane], rays_.up[first + lane]);
+      highs[lane] = std::max(highs[lane], rays_.up[first + lane]);
+    }
   }
+  float low = *std::min_element(lows.begin(), lows.end()), high = *std::max_element(highs.begin(), highs.end());
   low = std::max(low, -kSteepest);
   high = std::min(high, kSteepest);
   constexpr float kLeastSpan = 0.1F;

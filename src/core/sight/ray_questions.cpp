@@ -13,7 +13,7 @@ namespace {
 constexpr float kMargin = 4e-6F;
 constexpr float kDepthMargin = 1e-6F;
 constexpr int kEdge = GridWindow::kBrick;
-using Lanes = Eigen::Map<const Eigen::Array<float, kLanes, 1>>;
+using Lanes = std::array<float, kLanes>;
 
 /// A vector as side `side` sees it: depth along the side's axis, then across, then up.
 Eigen::Vector3f onSide(int side, const Eigen::Vector3f& p) {
@@ -167,12 +167,18 @@ inline bool RayIndex::anyRayCrosses(const Shadow& shadow, const Index3& voxel) c
     const Bin* bin = stripOf(shadow.side, column);
     const std::uint32_t end = bin[shadow.last_row + 1].first;
     for (std::uint32_t first = bin[shadow.first_row].first; first < end; first += kLanes) {
-      const Lanes across(&rays_.across[first]), up(&rays_.up[first]), depth(&rays_.depth[first]);
-      const Eigen::Array<float, kLanes, 1> slack = (across - across_low)
-                                                       .min(across_high - across)
-                                                       .min((up - up_low).min(up_high - up))
-                                                       .min(depth - shadow.near_depth);
-      if (slack.maxCoeff() < 0.0F) continue;
+      // Lanes behind the last ray may hold NaN: they are compared one by one. What a minimum or maximum over all lanes
+      // makes of NaN differs between libraries, and between their versions.
+      Lanes slack;
+      bool any = false;
+      for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+        const float across = rays_.across[first + lane], up = rays_.up[first + lane];
+        const float in_across = std::min(across - across_low, across_high - across);
+        const float in_up = std::min(up - up_low, up_high - up);
+        slack[lane] = std::min(std::min(in_across, in_up), rays_.depth[first + lane] - shadow.near_depth);
+        any |= slack[lane] >= 0.0F;
+      }
+      if (!any) continue;
       for (std::uint32_t ray = first; ray < std::min(first + kLanes, end); ++ray) {
         if (slack[ray - first] < 0.0F) continue;
         const Crossing crossing = judge(ray, shadow);
