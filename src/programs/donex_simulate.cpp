@@ -3,13 +3,16 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "bag/bag_file.h"
-#include "bag/simulation_bag.h"
 #include "donex/motion/ego_motion.h"
 #include "io/sequence.h"
 #include "programs/program.h"
 #include "simulation/simulator.h"
+#ifdef DONEX_WITH_BAGS
+#include "bag/bag_file.h"
+#include "bag/simulation_bag.h"
+#endif
 
 namespace donex {
 namespace {
@@ -36,6 +39,11 @@ struct OptionAdder {
     const std::string unit = *info.unit == '\0' ? "" : fmt::format(" [{}]", info.unit);
     app.add_option(flagOf(info), value, fmt::format("{}{}; by default {}", info.meaning, unit, value));
   }
+  void operator()(const OptionInfo& info, std::string& value, const std::vector<std::string>& names) {
+    app.add_option(flagOf(info), value,
+                   fmt::format("{}: {}; by default {}", info.meaning, fmt::join(names, ", "), value))
+        ->check(CLI::IsMember(names));
+  }
   void operator()(const OptionInfo& info, bool& value) { app.add_flag(flagOf(info), value, info.meaning); }
 
   static std::string flagOf(const OptionInfo& info) {
@@ -44,6 +52,14 @@ struct OptionAdder {
     return flag;
   }
 };
+
+std::string listOfPatterns() {
+  std::string text;
+  for (const simulation::Pattern& pattern : simulation::patterns()) {
+    text += fmt::format("{:<18} {}\n", pattern.name, pattern.meaning);
+  }
+  return text;
+}
 
 std::string listOfScenes() {
   std::string text;
@@ -123,6 +139,7 @@ void writeSequence(const CLI::App& app, const Arguments& arguments) {
   fmt::print("{} scans, {} echoes, {:.2f} % of them moving\n", writer.size(), count.echoes, percent);
 }
 
+#ifdef DONEX_WITH_BAGS
 void writeBag(const CLI::App& app, Arguments& arguments) {
   double& start = arguments.options.start_stamp;
   const double least = leastStart(arguments.options.odometry);
@@ -140,6 +157,10 @@ void writeBag(const CLI::App& app, Arguments& arguments) {
              summary.odometry);
 }
 
+#else
+void writeBag(const CLI::App&, const Arguments&) { throw ArgumentError("this program was built without ROS: no bags"); }
+#endif
+
 void run(const CLI::App& app, Arguments& arguments) {
   check(arguments);
   const bool is_bag = std::filesystem::path(arguments.out).extension() == ".bag";
@@ -152,7 +173,7 @@ void run(const CLI::App& app, Arguments& arguments) {
 int main(int argc, char** argv) {
   CLI::App app("Writes a simulated drive with ground truth.", "donex_simulate");
   donex::Arguments arguments;
-  app.footer("Scenes:\n" + donex::listOfScenes());
+  app.footer("Scenes:\n" + donex::listOfScenes() + "\nPatterns:\n" + donex::listOfPatterns());
   app.add_option("SCENE", arguments.scene, "one of the scenes below")->required();
   app.add_option("OUT", arguments.out, "a .bag, or a directory for a sequence (SemanticKITTI layout)")->required();
   app.add_option("--poses", arguments.poses, "of a sequence: true, or odometry with its errors; by default true")

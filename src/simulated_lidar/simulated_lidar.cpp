@@ -42,6 +42,9 @@ struct OptionReader {
   void operator()(const OptionInfo& info, Number& value, Number, Number) {
     if (std::string(info.name) != "start_stamp") parameters.read(info.name, value);
   }
+  void operator()(const OptionInfo& info, std::string& value, const std::vector<std::string>&) {
+    parameters.read(info.name, value);
+  }
   void operator()(const OptionInfo& info, bool& value) { parameters.read(info.name, value); }
 };
 

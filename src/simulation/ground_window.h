@@ -7,16 +7,17 @@
 #include <Eigen/Core>
 
 #include "simulation/ground.h"
+#include "simulation/sensor_model.h"
 
 namespace donex::simulation {
 
 /// The rays of one firing: all begin at `origin` and lie in one plane; ray i has the direction forward + slopes[i] *
 /// up.
 struct RayFan {
-  Eigen::Vector3d origin;            ///< scene frame [m]
-  Eigen::Vector3d forward;           ///< unit, roughly level
-  Eigen::Vector3d up;                ///< unit, roughly upright
-  const std::vector<float>& slopes;  ///< rising
+  Eigen::Vector3d origin;   ///< scene frame [m]
+  Eigen::Vector3d forward;  ///< unit, roughly level
+  Eigen::Vector3d up;       ///< unit, roughly upright
+  Slopes slopes;            ///< rising
 };
 
 /// Between the samples the height is bilinear; this is the ground that the rays see.

@@ -10,6 +10,7 @@ namespace {
 
 constexpr auto kHalfTurn = static_cast<float>(kPi);  // [rad]
 constexpr int kSectorColumns = 8;
+constexpr int kUnevenColumns = 2400;     // where the columns themselves are not even
 constexpr float kRoundingAngle = 2e-4f;  // [rad]
 constexpr float kRounding = 1e-3f;       // [m]
 
@@ -27,9 +28,23 @@ Eigen::Vector3f boundOf(const Shape& shape) {
 }  // namespace
 
 RayCaster::RayCaster(const SensorModel& model)
-    : model_(model), sectors_(static_cast<std::size_t>(sectorOf(model.columns() - 1)) + 1) {}
+    : model_(model), sectors_(static_cast<std::size_t>(floorDivide(columnsAround() - 1, kSectorColumns)) + 1) {}
 
-int RayCaster::sectorOf(int column) const { return floorDivide(column, kSectorColumns); }
+/// Directions, evenly around the sensor, by which targets are kept.
+int RayCaster::columnsAround() const { return model_.is_even_turn ? model_.columns() : kUnevenColumns; }
+
+int RayCaster::sectorOf(int column) const {
+  if (model_.is_even_turn) return floorDivide(column, kSectorColumns);
+  const Eigen::Vector2d heading = model_.headings[static_cast<std::size_t>(column)];
+  const double from_rear = (kPi - std::atan2(heading.y(), heading.x())) / (2.0 * kPi);
+  return std::clamp(static_cast<int>(from_rear * kUnevenColumns), 0, kUnevenColumns - 1) / kSectorColumns;
+}
+
+/// Those that the columns of a stretch lie in.
+RayCaster::Open RayCaster::openSectors(const Stretch& stretch) const {
+  if (!model_.is_even_turn) return {0, static_cast<int>(sectors_.size()) - 1};
+  return {sectorOf(stretch.first_column), sectorOf(stretch.end_column - 1)};
+}
 
 RayCaster::Extent RayCaster::extentOf(const Target& target, const Stretch& stretch) {
   const Shape& shape = target.shape;
@@ -77,19 +92,20 @@ RayCaster::Extent RayCaster::extentOf(const Target& target, const Stretch& stret
 
 void RayCaster::distribute(const Extent& extent, const Stretch& stretch) {
   const int count = static_cast<int>(sectors_.size());
-  const int first_open = sectorOf(stretch.first_column);
-  const int last_open = sectorOf(stretch.end_column - 1);
-  const float columns_per_radian = static_cast<float>(model_.columns()) / (2.0f * kHalfTurn);
+  const Open open = openSectors(stretch);
+  const float columns_per_radian = static_cast<float>(columnsAround()) / (2.0f * kHalfTurn);
   const auto column_at = [&](float azimuth) { return (kHalfTurn - azimuth) * columns_per_radian - 0.5f; };
-  int first = sectorOf(static_cast<int>(std::floor(column_at(extent.azimuth + extent.half_angle))));
-  int last = sectorOf(static_cast<int>(std::ceil(column_at(extent.azimuth - extent.half_angle))));
+  const auto first_column = static_cast<int>(std::floor(column_at(extent.azimuth + extent.half_angle)));
+  const auto last_column = static_cast<int>(std::ceil(column_at(extent.azimuth - extent.half_angle)));
+  int first = floorDivide(first_column, kSectorColumns);
+  int last = floorDivide(last_column, kSectorColumns);
   if (last - first >= count) {
     first = 0;
     last = count - 1;
   }
   for (int sector = first; sector <= last; ++sector) {
     const int wrapped = sector - count * floorDivide(sector, count);
-    if (wrapped >= first_open && wrapped <= last_open) sectors_[static_cast<std::size_t>(wrapped)].push_back(extent);
+    if (wrapped >= open.first && wrapped <= open.last) sectors_[static_cast<std::size_t>(wrapped)].push_back(extent);
   }
 }
 
@@ -102,9 +118,8 @@ void RayCaster::prepare(const std::vector<Target>& targets, const Stretch& stret
   }
   std::sort(extents_.begin(), extents_.end(),
             [](const Extent& a, const Extent& b) { return a.near != b.near ? a.near < b.near : a.target < b.target; });
-  for (int s = sectorOf(stretch.first_column); s <= sectorOf(stretch.end_column - 1); ++s) {
-    sectors_[static_cast<std::size_t>(s)].clear();
-  }
+  const Open open = openSectors(stretch);
+  for (int s = open.first; s <= open.last; ++s) sectors_[static_cast<std::size_t>(s)].clear();
   for (const Extent& extent : extents_) distribute(extent, stretch);
 }
 
@@ -114,8 +129,9 @@ void RayCaster::cast(int column, const Eigen::Isometry3f& sensor, float time, st
   const Eigen::Vector3f forward = axes.leftCols<2>() * heading;
   const Eigen::Vector3f up = axes.col(2);
   const std::vector<Extent>& sector = sectors_[static_cast<std::size_t>(sectorOf(column))];
-  for (std::size_t beam = 0; beam < model_.slopes.size(); ++beam) {
-    const float slope = model_.slopes[beam];
+  const Slopes slopes = model_.slopesOf(column);
+  for (std::size_t beam = 0; beam < slopes.size(); ++beam) {
+    const float slope = slopes[beam];
     Ray ray{sensor.translation(), forward + slope * up};
     Hit& hit = hits[beam];
     for (const Extent& extent : sector) {

@@ -57,6 +57,11 @@ class RayCaster {
   static Extent extentOf(const Target& target, const Stretch& stretch);
   void distribute(const Extent& extent, const Stretch& stretch);
   int sectorOf(int column) const;
+  int columnsAround() const;
+  struct Open {
+    int first, last;
+  };
+  Open openSectors(const Stretch& stretch) const;
 
   const SensorModel& model_;
   const std::vector<Target>* targets_ = nullptr;

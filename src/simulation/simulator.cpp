@@ -1,9 +1,11 @@
 #include "simulation/simulator.h"
 
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "simulation/odometry_error.h"
+#include "simulation/scan_pattern.h"
 #include "simulation/scene.h"
 #include "simulation/sweep.h"
 
@@ -47,6 +49,19 @@ SensorOptions sensorOptions(const SimulatorOptions& options) {
   return sensor;
 }
 
+std::optional<ScanPattern> patternOf(const SimulatorOptions& options) {
+  const Pattern pattern = options.chosenPattern();
+  if (pattern.kind == PatternKind::kSpinning) return std::nullopt;
+  return ScanPattern(pattern, 1.0 / options.scan_rate, static_cast<std::uint64_t>(options.seed));
+}
+
+SensorModel firstModel(const SimulatorOptions& options, const Scene& scene, const std::optional<ScanPattern>& pattern) {
+  if (!pattern) return makeSensorModel(options.beams == 0 ? scene.beams : options.beams);
+  SensorModel model;
+  pattern->aim(0, model);
+  return model;
+}
+
 /// Heading and place of the vehicle at the start; the vertical stays the vertical.
 Eigen::Isometry3d odomFrom(const Eigen::Isometry3d& start) {
   const double yaw = std::atan2(start.linear()(1, 0), start.linear()(0, 0));
@@ -62,7 +77,8 @@ struct Simulator::State {
   State(const std::string& name, const SimulatorOptions& given)
       : options(checked(name, given)),
         scene(makeScene(name, static_cast<std::uint64_t>(given.seed))),
-        sensor(makeSensorModel(given.beams == 0 ? scene.beams : given.beams)),
+        pattern(patternOf(given)),
+        sensor(firstModel(given, scene, pattern)),
         sweep(scene, sensor, sensorOptions(given)),
         odometry_error(given.odometry, scramble(static_cast<std::uint64_t>(given.seed), 0x0D0)),
         odom_from_scene(odomFrom(poseOf(scene.ego, scene.ground, 0.0))),
@@ -75,7 +91,8 @@ struct Simulator::State {
 
   SimulatorOptions options;
   Scene scene;
-  SensorModel sensor;
+  std::optional<ScanPattern> pattern;  // not of a spinning sensor
+  SensorModel sensor;                  // of the scan that comes
   Sweep sweep;
   OdometryError odometry_error;
   Eigen::Isometry3d odom_from_scene;
@@ -116,6 +133,7 @@ bool Simulator::next(SimulatedScan& scan) {
   scan.stamp = state.options.start_stamp + time;
   scan.odom_from_base = state.odomFromBase(time);
   scan.base_from_sensor = state.scene.ego.base_from_sensor;
+  if (state.pattern) state.pattern->aim(state.next_scan, state.sensor);
   state.sweep.measure(time, state.next_scan, scan.echoes, scan.labels);
   state.report(time, scan.odometry);
   ++state.next_scan;

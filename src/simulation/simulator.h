@@ -16,7 +16,7 @@ struct SimulatedEcho {
   Eigen::Vector3f position;  ///< sensor frame at the echo's own time [m]
   float intensity = 0.0f;    ///< 0 to 1
   float time = 0.0f;         ///< after the scan's stamp [s]: negative with distortion, 0 without
-  std::uint16_t ring = 0;    ///< 0 is the lowest beam
+  std::uint16_t ring = 0;    ///< 0 is the lowest beam; a laser of a non-repetitive pattern
 };
 
 /// One turn of the sensor; it is complete at `stamp`.
@@ -77,7 +77,7 @@ class Simulator {
   std::size_t moverCount() const;
   MoverTruth mover(std::size_t number, double stamp) const;
 
-  int beams() const;
+  int beams() const;    ///< rays a firing
   int columns() const;  ///< firings a turn: beams() x columns() rays
   /// Scans in the whole duration; 0: endless.
   std::size_t size() const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <stdexcept>
 
 namespace donex::simulation {
 namespace {
@@ -19,7 +20,31 @@ struct RangeCheck {
     faults.push_back(text.str());
   }
   void operator()(const OptionInfo&, bool) {}
+  void operator()(const OptionInfo& info, const std::string& value, const std::vector<std::string>& names) {
+    if (std::find(names.begin(), names.end(), value) != names.end()) return;
+    std::string text = std::string(info.name) + " is '" + value + "'; there are:";
+    for (const std::string& name : names) text += " " + name;
+    faults.push_back(text);
+  }
 };
+
+/// What does not go together.
+void addPatternFaults(const SimulatorOptions& options, std::vector<std::string>& faults) {
+  constexpr double kSteepest = 60.0;  // no ray may be steeper: the ground is followed level [deg]
+  constexpr double kFewest = 100.0;   // rays a scan
+  if (!faults.empty()) return;
+  const Pattern pattern = options.chosenPattern();
+  if (pattern.kind == PatternKind::kSpinning) {
+    const bool describes_another = options.view_width > 0.0 || options.view_height > 0.0 || options.ray_rate > 0.0;
+    if (describes_another) faults.emplace_back("view_width, view_height and ray_rate are not for the spinning pattern");
+    return;
+  }
+  if (options.beams != 0) faults.emplace_back("beams is only for the spinning pattern");
+  if (pattern.lowest < -kSteepest || pattern.highest > kSteepest) {
+    faults.emplace_back("view_height reaches beyond 60 degrees");
+  }
+  if (pattern.ray_rate < kFewest * options.scan_rate) faults.emplace_back("ray_rate leaves less than 100 rays a scan");
+}
 
 }  // namespace
 
@@ -35,6 +60,20 @@ long OdometryOptions::early() const {
   return static_cast<long>(std::ceil(std::max(kLead, stamp_offset) * rate));
 }
 
+Pattern SimulatorOptions::chosenPattern() const {
+  const Pattern* found = findPattern(pattern);
+  if (found == nullptr) throw std::out_of_range("no pattern '" + pattern + "'");
+  Pattern chosen = *found;
+  if (view_width > 0.0) chosen.width = view_width;
+  if (ray_rate > 0.0) chosen.ray_rate = ray_rate;
+  if (view_height > 0.0) {
+    const double middle = 0.5 * (chosen.lowest + chosen.highest);
+    chosen.lowest = middle - 0.5 * view_height;
+    chosen.highest = middle + 0.5 * view_height;
+  }
+  return chosen;
+}
+
 std::size_t SimulatorOptions::scans() const {
   constexpr double kRounding = 1e-6;
   return static_cast<std::size_t>(std::floor(duration * scan_rate + kRounding));
@@ -46,6 +85,7 @@ std::vector<std::string> SimulatorOptions::faults() const {
   const bool known_beams = beams == 0 || beams == 16 || beams == 32 || beams == 64 || beams == 128;
   const bool within = beams >= 0 && beams <= 128;
   if (within && !known_beams) faults.push_back("beams is " + std::to_string(beams) + ", must be 16, 32, 64, 128 or 0");
+  addPatternFaults(*this, faults);
   const bool ends_early = faults.empty() && duration > 0.0 && scans() == 0;
   if (ends_early) {
     std::ostringstream text;

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "simulation/scan_pattern.h"
+
 namespace donex::simulation {
 
 /// How the reported odometry differs from the true motion. White noise: each axis, each sample.
@@ -30,6 +32,10 @@ struct OdometryOptions {
 struct SimulatorOptions {
   int seed = 1;
   int beams = 0;
+  std::string pattern = "spinning";
+  double view_width = 0.0;   // [deg]
+  double view_height = 0.0;  // [deg]
+  double ray_rate = 0.0;     // [1/s]
   double duration = 20.0;    // [s]
   double scan_rate = 10.0;   // [Hz]
   double start_stamp = 0.0;  // [s]
@@ -42,6 +48,8 @@ struct SimulatorOptions {
   /// Every fault, one sentence each; empty when the options can be used.
   std::vector<std::string> faults() const;
 
+  /// The pattern as chosen, with what is said otherwise of it. Throws std::out_of_range for an unknown one.
+  Pattern chosenPattern() const;
   /// Scans in the whole duration; 0: endless.
   std::size_t scans() const;
 };
@@ -53,7 +61,8 @@ struct OptionInfo {
 };
 
 /// Shows `visit` every option, in the order of the documentation, as one of
-///   visit(info, double&, min, max)   visit(info, int&, min, max)   visit(info, bool&)
+///   visit(info, double&, min, max)   visit(info, int&, min, max)   visit(info, bool&)   visit(info, std::string&,
+///   names)
 /// `options` is a SimulatorOptions, const or not.
 template <class Options, class Visitor>
 void visitOptions(Options& options, Visitor&& visit) {
@@ -62,6 +71,13 @@ void visitOptions(Options& options, Visitor&& visit) {
         options.seed, 0, kMostSeeds);
   visit(OptionInfo{"beams", "", "16, 32, 64 or 128; 0: what suits the scene (64; empty_room 16)"}, options.beams, 0,
         128);
+  visit(OptionInfo{"pattern", "", "how the sensor looks around"}, options.pattern, patternNames());
+  visit(OptionInfo{"view_width", "deg", "field of view of a pattern that is not spinning; 0: the pattern's own"},
+        options.view_width, 0.0, 360.0);
+  visit(OptionInfo{"view_height", "deg", "the same, around its middle; 0: the pattern's own"}, options.view_height, 0.0,
+        120.0);
+  visit(OptionInfo{"ray_rate", "1/s", "rays a second of a pattern that is not spinning; 0: the pattern's own"},
+        options.ray_rate, 0.0, 1e7);
   visit(OptionInfo{"duration", "s", "simulated time; 0: endless"}, options.duration, 0.0, 1e6);
   visit(OptionInfo{"scan_rate", "Hz", "turns of the sensor a second"}, options.scan_rate, 1.0, 50.0);
   visit(OptionInfo{"start_stamp", "s", "stamp at which the scene begins; the first scan is complete one turn later"},

@@ -21,7 +21,7 @@ constexpr double kWindFrequency = 0.6;  // [Hz]
 
 Sweep::Sweep(const Scene& scene, const SensorModel& model, const SensorOptions& options)
     : scene_(scene), model_(model), options_(options), window_(scene.ground), caster_(model) {
-  hits_.resize(model.slopes.size());
+  hits_.resize(static_cast<std::size_t>(model.beams()));
 }
 
 /// `after` the turn's end, so 0 or negative [s].
@@ -113,7 +113,7 @@ Eigen::Vector3f Sweep::normalOf(const Echo& echo, const Eigen::Vector3f& point,
 }
 
 void Sweep::receive(const Echo& echo) {
-  const float slope = model_.slopes[static_cast<std::size_t>(echo.beam)];
+  const float slope = model_.slopesOf(echo.column)[static_cast<std::size_t>(echo.beam)];
   const Eigen::Vector2d heading = model_.headings[static_cast<std::size_t>(echo.column)];
   const Eigen::Vector3d ray(heading.x(), heading.y(), slope);
   const double length = ray.norm();
@@ -141,7 +141,7 @@ void Sweep::receive(const Echo& echo) {
   const double intensity = std::min(1.0, static_cast<double>(surface.reflectivity) * (0.3 + 0.7 * facing) * shine);
   const double time = options_.distortion ? options_.duration * ((echo.column + 0.5) / model_.columns() - 1.0) : 0.0;
   echoes_->push_back({(measured / length * ray).cast<float>(), static_cast<float>(intensity), static_cast<float>(time),
-                      static_cast<std::uint16_t>(echo.beam)});
+                      static_cast<std::uint16_t>(model_.ring(echo.column, echo.beam))});
   labels_->push_back(surface.label);
 }
 
@@ -149,7 +149,7 @@ void Sweep::fire(int column) {
   const double after = options_.distortion ? options_.duration * ((column + 0.5) / model_.columns() - 1.0) : 0.0;
   const Eigen::Isometry3d sensor = sensorAt(after);
   const Eigen::Vector3d forward = sensor.linear().leftCols<2>() * model_.headings[static_cast<std::size_t>(column)];
-  window_.meet({sensor.translation(), forward, sensor.linear().col(2), model_.slopes}, ground_);
+  window_.meet({sensor.translation(), forward, sensor.linear().col(2), model_.slopesOf(column)}, ground_);
   for (std::size_t i = 0; i < hits_.size(); ++i) hits_[i] = {ground_[i], ground_[i] == kMiss ? kNoTarget : kGround};
 
   Eigen::Isometry3d relative = sensor;
