@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -180,8 +181,13 @@ TEST(Scenes, AreTheSameFromEveryCompiler) {
       {"empty_room", 360.2812},
   };
   for (const std::string& name : sceneNames()) {
-    ASSERT_EQ(expected.count(name), 1U) << name;
-    EXPECT_NEAR(fingerprint(makeScene(name, 1)), expected.at(name), 0.01) << name;
+    const double actual = fingerprint(makeScene(name, 1));
+    const auto it = expected.find(name);
+    if (it == expected.end()) {
+      ADD_FAILURE() << "a new scene wants a row: {\"" << name << "\", " << std::to_string(actual) << "}";
+    } else {
+      EXPECT_NEAR(actual, it->second, 0.01) << name;
+    }
   }
 }
 
