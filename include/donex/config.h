@@ -7,7 +7,7 @@
 
 namespace donex {
 
-/// DONEX in its forms, and the systems it is compared with (docs/algorithm.md, "Comparison methods").
+/// DONEX in its forms, and the systems it is compared with (algorithm: "Comparison methods").
 enum class Method {
   kDonex3d,
   kDonex2d,
@@ -57,7 +57,7 @@ struct Region {
   double z_min = -4.0, z_max = 6.0;
 };
 
-/// Evidence beyond the paper's rule (docs/algorithm.md, "Evidence"); each step can be switched off alone.
+/// Evidence beyond the paper's rule (algorithm: "Evidence"); each step can be switched off alone.
 /// With all of them off a method is the paper's.
 struct EvidenceConfig {
   bool free_evidence = true;

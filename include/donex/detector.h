@@ -7,6 +7,7 @@
 #include "donex/config.h"
 #include "donex/explanation.h"
 #include "donex/object.h"
+#include "donex/proof.h"
 #include "donex/scan.h"
 
 namespace donex {
@@ -40,6 +41,10 @@ class Detector {
 
   /// One per echo of the last scan; empty where the method cannot tell. Computed on demand.
   virtual std::vector<EchoReason> reasons() const { return {}; }
+
+  /// How the motion of each echo of the last scan was proven, kNone where it is static; empty where the method has no
+  /// proofs. Computed on demand.
+  virtual std::vector<Proof> proofs() const { return {}; }
 
   /// Cells of the 3D methods; empty for the others. Computed on demand, once watched, for scans since then.
   virtual MemoryCells memoryCells() const { return {}; }

@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include "donex/proof.h"
+
 namespace donex {
 
 struct Object {
@@ -14,8 +16,9 @@ struct Object {
   Eigen::Vector3d size = Eigen::Vector3d::Zero();      ///< length, width, height [m]
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< odometry frame [m/s]
   bool dynamic = false;
-  double age = 0.0;          ///< time since first seen [s]
-  std::uint32_t echoes = 0;  ///< echoes of the present scan that belong to it
+  Proof proof = Proof::kNone;  ///< of its motion in the present scan
+  double age = 0.0;            ///< time since first seen [s]
+  std::uint32_t echoes = 0;    ///< echoes of the present scan that belong to it
 };
 
 }  // namespace donex

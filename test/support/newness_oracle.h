@@ -35,10 +35,10 @@ class Newness {
   bool isYoung(int birth, bool was_free) const {
     return stampOf(birth) >= stamps_.back() - (was_free ? new_window_ : found_window_);
   }
-  bool wasSeenFree(const SightHistory& history, const Eigen::Vector3f& point, double since, bool settled) const {
+  bool wasSeenFree(const SightView& before_scan, const Eigen::Vector3f& point, double since, bool settled) const {
     int needed = config_.free_evidence ? config_.free_scans : 1;
     if (settled && config_.careful_sight) needed = config_.settled_free_scans;
-    return history.ask(point, since, std::numeric_limits<int>::max()).free >= needed;
+    return before_scan.ask(point, since, std::numeric_limits<int>::max()).free >= needed;
   }
 
   EvidenceConfig config_;
@@ -60,17 +60,17 @@ class Newness3d : public Newness {
     }
   }
 
-  Place judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& point, const SightHistory& history) {
+  Place judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& point, const SightView& before_scan) {
     const Voxel voxel = absolute(voxelOf(in_window), window);
     const auto known = voxels_.find(voxel);
     if (known == voxels_.end()) {
       const bool is_first_scan = now() == 1;
       const bool free =
-          !is_first_scan && (!config_.free_evidence || wasSeenFree(history, point, kBeforeEverything, false));
+          !is_first_scan && (!config_.free_evidence || wasSeenFree(before_scan, point, kBeforeEverything, false));
       voxels_[voxel] = born(voxel, free);
     } else if (known->second.last_hit < now() - 1) {
       const bool settled = !isYoung(known->second.birth, known->second.was_free);
-      if (wasSeenFree(history, point, stampOf(known->second.last_hit), settled)) known->second = born(voxel, true);
+      if (wasSeenFree(before_scan, point, stampOf(known->second.last_hit), settled)) known->second = born(voxel, true);
     }
     State& state = voxels_[voxel];
     state.last_hit = now();
@@ -116,7 +116,7 @@ class Newness2d : public Newness {
     }
   }
 
-  Place judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& point, const SightHistory& history) {
+  Place judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& point, const SightView& before_scan) {
     const Voxel voxel = absolute(voxelOf(in_window), window);
     const Position position{voxel[0], voxel[1]};
     const float height = in_window.z() + static_cast<float>(window.minIndex().z() - floor_);
@@ -125,12 +125,13 @@ class Newness2d : public Newness {
     const int before = cell.hits.size() > 1 ? cell.hits[cell.hits.size() - 2] : kNever;
     const bool missed = before < now() - 1;
     if (cell.settled.holds(height)) {
-      if (!(missed && wasSeenFree(history, point, stampOf(before), true))) return Place::kSettled;
+      if (!(missed && wasSeenFree(before_scan, point, stampOf(before), true))) return Place::kSettled;
       cell.settled = HeightRange{};
     }
     if (cell.arrived.holds(height)) return Place::kNew;
     if (cell.found.holds(height) && !missed) return foundPlace(cell, height);
-    const bool free = now() > 1 && (!config_.free_evidence || wasSeenFree(history, point, kBeforeEverything, false));
+    const bool free =
+        now() > 1 && (!config_.free_evidence || wasSeenFree(before_scan, point, kBeforeEverything, false));
     const bool at_surface = free && config_.neighbourhood && touchesSettled(position, height);
     const bool comes = free && !at_surface;
     HeightRange& range = comes ? cell.arrived : cell.found;

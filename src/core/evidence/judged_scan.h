@@ -17,10 +17,10 @@ enum class Place : std::uint8_t {
 };
 
 /// How an echo takes part in clusters.
-enum class Standing : std::uint8_t {
-  kOut,    ///< in none: on the ground, too high, outside the grid, no echo
-  kIn,     ///< connects
-  kSkirt,  ///< near the ground: belongs to what stands right above it, connects nothing
+enum class ClusterRole : std::uint8_t {
+  kNone,      ///< in none: on the ground, too high, outside the grid, no echo
+  kConnects,  ///< connects what it touches
+  kFollows,   ///< near the ground: belongs to what stands right above it, connects nothing
 };
 
 /// One entry per echo. Points are the echoes in the grid's window, z up [m].
@@ -31,7 +31,7 @@ struct JudgedScan {
   std::vector<Eigen::Vector3f> points;  ///< NaN where the echo is none
   std::vector<std::uint8_t> is_echo;
   std::vector<float> heights;  ///< above the local ground [m]
-  std::vector<Standing> standing;
+  std::vector<ClusterRole> roles;
   std::vector<Place> places;
 };
 

@@ -38,16 +38,16 @@ double ScanClock::stampOf(std::uint32_t scan) const {
   return stamps_[scan % kRememberedStamps];
 }
 
-bool wasFree(const EvidenceConfig& config, const SightHistory& history, const Eigen::Vector3f& point, double since,
+bool wasFree(const EvidenceConfig& config, const SightView& before, const Eigen::Vector3f& point, double since,
              bool known, bool settled) {
   if (!config.free_evidence && !known) return true;  // the paper: never hit is new
   const int unsettled = config.free_evidence ? config.free_scans : 1;
   const int needed = settled && config.careful_sight ? config.settled_free_scans : unsettled;
-  return history.ask(point, since, needed).free >= needed;
+  return before.ask(point, since, needed).free >= needed;
 }
 
 Place Newness3d::judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& point, const ScanClock& clock,
-                       const SightHistory& history) {
+                       const SightView& before) {
   const Index3 voxel = voxelOf(in_window);
   VoxelRecord& record = memory_.at(voxel);
   if (record.last_hit != clock.scan()) {
@@ -55,7 +55,7 @@ Place Newness3d::judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& 
     const bool missed = record.last_hit + 1 < clock.scan();
     // De-shadowing, asked where the answer matters: only a voxel that is hit again after a gap.
     const double since = record.occupied() ? clock.stampOf(record.last_hit) : kBeforeEverything;
-    const bool was_free = missed && wasFree(config_, history, point, since, record.occupied(), settled);
+    const bool was_free = missed && wasFree(config_, before, point, since, record.occupied(), settled);
     if (!record.occupied() || was_free) {
       record.birth = clock.scan();
       record.was_free = was_free;
@@ -108,7 +108,7 @@ void Newness2d::settle(Cell& cell, const ScanClock& clock) const {
 }
 
 Place Newness2d::judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& point, const ScanClock& clock,
-                       const SightHistory& history) {
+                       const SightView& before) {
   const Index3 voxel = voxelOf(in_window);
   const float height = cells_layout_.heightOf(in_window);
   Cell& cell = cellAt(voxel.x(), voxel.y());
@@ -122,13 +122,13 @@ Place Newness2d::judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& 
   const double since = cell.hit_before != 0 ? clock.stampOf(cell.hit_before) : kBeforeEverything;
   if (cell.settled.holds(height)) {
     // De-shadowing, asked where the answer matters: only in a cell that is hit again after a gap.
-    const bool has_left = missed && wasFree(config_, history, point, since, true, true);
+    const bool has_left = missed && wasFree(config_, before, point, since, true, true);
     if (!has_left) return Place::kSettled;
     cell.settled = HeightRange{};
   }
   if (cell.arrived.holds(height)) return Place::kNew;
   if (cell.found.holds(height) && !missed) return cell.placeInFound(height);
-  const bool was_free = !is_first_scan && wasFree(config_, history, point, kBeforeEverything, false, false);
+  const bool was_free = !is_first_scan && wasFree(config_, before, point, kBeforeEverything, false, false);
   const bool at_surface = was_free && config_.neighbourhood && touchesSettled(voxel.x(), voxel.y(), height);
   const bool comes = was_free && !at_surface;
   HeightRange& range = comes ? cell.arrived : cell.found;

@@ -49,9 +49,9 @@ class Newness3d {
   void expect(const Eigen::Vector3f& in_window) const { memory_.expect(voxelOf(in_window)); }
 
   /// Judges one echo of the present scan and remembers it. `in_window` in voxel edge lengths, `point` the
-  /// same in [m], as the history is asked. A scan's echoes of one voxel share the judgement of the first.
+  /// same in [m], as `before` is asked. A scan's echoes of one voxel share the judgement of the first.
   Place judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& point, const ScanClock& clock,
-              const SightHistory& history);
+              const SightView& before);
 
   void reset() { memory_.reset(); }
   const BirthMemory& memory() const { return memory_; }
@@ -81,7 +81,7 @@ class Newness2d {
   /// As Newness3d::judge; an echo inside a known range shares that range's judgement. Heights that were found
   /// at a surface stay there until they settle: they share that judgement, not the one of what was found around them.
   Place judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& point, const ScanClock& clock,
-              const SightHistory& history);
+              const SightView& before);
   void reset();
   const GridWindow& window() const { return window_; }
   std::size_t memoryBytes() const { return cells_.capacity() * sizeof(Cell); }
@@ -112,7 +112,7 @@ class Newness2d {
 
 /// True where enough scans since `since` [s] saw `point` free. `known`: the place is remembered, so it
 /// is forgotten only by being seen through; `settled`: careful sight wants more scans for it.
-bool wasFree(const EvidenceConfig& config, const SightHistory& history, const Eigen::Vector3f& point, double since,
+bool wasFree(const EvidenceConfig& config, const SightView& before, const Eigen::Vector3f& point, double since,
              bool known, bool settled);
 
 }  // namespace donex

@@ -5,16 +5,18 @@
 #include "core/evidence/newness.h"
 #include "core/grid/storage.h"
 #include "core/methods/detectors.h"
+#include "core/methods/evidence_explanation.h"
 #include "core/methods/stream_guard.h"
-#include "core/objects/candidate_finder.h"
 #include "core/objects/object_tracker.h"
+#include "core/objects/segmenter.h"
+#include "core/objects/trimmer.h"
 #include "core/pi.h"
 
 namespace donex {
 namespace {
 
-constexpr float kSkirt = 0.07F;             // [m] from here up to the ground clearance echoes may belong to an object
-constexpr std::size_t kExpectedAhead = 12;  // echoes; long enough for memory to answer
+constexpr float kLowestOfObjects = 0.07F;   // [m] from here up to the ground clearance echoes may belong to an object
+constexpr std::size_t kPrefetchAhead = 12;  // echoes; long enough for memory to answer
 constexpr double kHistorySpacing = 0.09;    // [s] a 10 Hz sensor's every scan, a 20 Hz sensor's every second
 
 SightHistory historyOf(const EvidenceConfig& e) {
@@ -23,76 +25,88 @@ SightHistory historyOf(const EvidenceConfig& e) {
                       {e.careful_sight, std::tan(e.sight_gap * kRadians)});
 }
 
-/// What both grids share; `Newness` is what differs between them.
-template <class Newness>
+/// What both grids share; `PlaceJudge` is what differs between them.
+template <class PlaceJudge>
 class EvidenceDetector : public Detector {
  public:
   explicit EvidenceDetector(const Config& config)
       : config_(config),
-        newness_(config.scrolling()),  // births are times, which resampling would blur
+        places_(config.scrolling()),  // births are times, which resampling would blur
         clock_(config.evidence.birth_age ? config.evidence.birth_window : 0.0),
-        history_(historyOf(config.evidence)),
+        sights_(historyOf(config.evidence)),
         ground_(reachOf(config.region)),
-        finder_(reachOf(config.region), config.objects),
-        tracker_(config.objects) {}
+        segmenter_(reachOf(config.region), config.objects),
+        tracker_(config.objects),
+        trimmer_(reachOf(config.region), config.objects) {}
 
   void process(const Scan& scan, EchoLabels& labels) override {
     guard_.admit(scan);
     clock_.begin(scan.stamp);
-    newness_.shift(scan.odom_from_base);  // voxel shift (paper, "Ego motion")
-    newness_.window().enter(scan, scan_);
-    place(scan.stamp);
-    findGround();   // algorithm: "Ground"
-    judgePlaces();  // asked of the scans before this one
-    history_.add(scan, judged_.is_echo);
-    history_.askFrom(judged_.odom_from_points);
-    labelPlaces(labels);
-    if (config_.objects.enabled) labelObjects(labels);
-    dynamic_ = labels.dynamic;
+    places_.shift(scan.odom_from_base);        // voxel shift (paper, "Ego motion")
+    places_.window().enter(scan, in_voxels_);  // every frame once: in voxels,
+    enterPoints(scan.stamp);                   // in metres, and what lies between them and the odometry
+    heightsAboveGround();
+    const SightView before = sights_.seenFrom(judged_.odom_from_points);
+    judgePlaces(before);
+    sights_.add(scan, judged_.is_echo);
+    const ScanSight now = sights_.newestSeenFrom(judged_.odom_from_points);
+    if (config_.objects.enabled) {
+      tracker_.predict(scan.stamp, predictions_);
+      segmenter_.segment(judged_, predictions_, segments_);
+      tracker_.update(judged_, segments_, predictions_, now, verdicts_);
+      trimmer_.trim(judged_, segments_, verdicts_, proofs_);
+    } else {
+      proveByPlaces();
+    }
+    write(labels);
   }
 
   void reset() override {
-    newness_.reset();
+    places_.reset();
     guard_.reset();
     clock_.reset();
-    history_.reset();
+    sights_.reset();
     tracker_.reset();
-    dynamic_.clear();
+    proofs_.clear();
   }
 
   const std::vector<Object>& objects() const override { return tracker_.objects(); }
 
-  std::vector<Eigen::Vector3f> dynamicCells() const override { return cellCenters(newness_.window(), scan_, dynamic_); }
-
-  std::vector<EchoReason> reasons() const override {
-    std::vector<EchoReason> reasons(dynamic_.size());
-    for (std::size_t i = 0; i < reasons.size(); ++i) reasons[i] = reasonOf(i);
-    return reasons;
+  std::vector<Eigen::Vector3f> dynamicCells() const override {
+    return cellCenters(places_.window(), in_voxels_, movingEchoes(proofs_));
   }
 
-  MemoryCells memoryCells() const override { return cellsOf(newness_); }
+  std::vector<EchoReason> reasons() const override { return reasonsOf(judged_, in_voxels_.inside, proofs_); }
+  std::vector<Proof> proofs() const override { return proofs_; }
 
-  GridOutline outline() const override { return newness_.window().outline(); }
+  MemoryCells memoryCells() const override {
+    return memoryCellsOf(places_, clock_, config_.evidence, sights_, judged_.odom_from_points);
+  }
+
+  GridOutline outline() const override { return places_.window().outline(); }
 
   std::size_t memoryBytes() const override {
-    const std::size_t in_grid = scan_.echoes.capacity() * sizeof(Eigen::Vector3f) + scan_.inside.capacity();
+    const std::size_t in_grid = in_voxels_.echoes.capacity() * sizeof(Eigen::Vector3f) + in_voxels_.inside.capacity();
     const std::size_t judged = judged_.points.capacity() * sizeof(Eigen::Vector3f) +
                                judged_.heights.capacity() * sizeof(float) + judged_.is_echo.capacity() +
-                               judged_.standing.capacity() + judged_.places.capacity() + dynamic_.capacity();
-    return in_grid + judged + newness_.memoryBytes() + history_.memoryBytes() + ground_.memoryBytes() +
-           finder_.memoryBytes() + tracker_.memoryBytes() + candidates_.memoryBytes();
+                               judged_.roles.capacity() + judged_.places.capacity() + proofs_.capacity();
+    const std::size_t decided =
+        segments_.memoryBytes() + predictions_.capacity() * sizeof(Prediction) + verdicts_.capacity() * sizeof(Verdict);
+    return in_grid + judged + decided + places_.memoryBytes() + sights_.memoryBytes() + ground_.memoryBytes() +
+           segmenter_.memoryBytes() + trimmer_.memoryBytes() + tracker_.memoryBytes();
   }
 
  private:
-  void place(double stamp) {
-    const GridWindow& window = newness_.window();
+  void enterPoints(double stamp) {
+    const GridWindow& window = places_.window();
     judged_.stamp = stamp;
     judged_.odom_from_points = window.odomFromWindow();
-    judged_.sensor = scan_.origin * static_cast<float>(window.voxelSize());
-    placePoints(window, scan_, judged_.points, judged_.is_echo);
+    judged_.sensor = in_voxels_.origin * static_cast<float>(window.voxelSize());
+    placePoints(window, in_voxels_, judged_.points, judged_.is_echo);
   }
 
-  void findGround() {
+  /// Ground: the height of every echo, and so its role in clusters.
+  void heightsAboveGround() {
     const bool enabled = config_.evidence.ground;
     const auto clearance = static_cast<float>(config_.evidence.ground_clearance);
     resizeTo(judged_.heights, judged_.points.size());
@@ -100,98 +114,72 @@ class EvidenceDetector : public Detector {
       ground_.estimate(judged_.sensor, judged_.points, judged_.is_echo);
       ground_.heightsOf(judged_.points, judged_.heights);
     }
-    judged_.standing.assign(judged_.points.size(), Standing::kOut);
+    judged_.roles.assign(judged_.points.size(), ClusterRole::kNone);
     for (std::size_t i = 0; i < judged_.points.size(); ++i) {
       // Without the step there is no ground to stand above: heights are the window's.
       if (!enabled) judged_.heights[i] = judged_.points[i].z();
       const float height = judged_.heights[i];
-      if (scan_.inside[i] == 0) continue;
+      if (in_voxels_.inside[i] == 0) continue;
       const bool is_above = !enabled || height > clearance;
       if (is_above) {
-        judged_.standing[i] = Standing::kIn;
-      } else if (height > kSkirt) {
-        judged_.standing[i] = Standing::kSkirt;
+        judged_.roles[i] = ClusterRole::kConnects;
+      } else if (height > kLowestOfObjects) {
+        judged_.roles[i] = ClusterRole::kFollows;
       }
     }
   }
 
-  void judgePlaces() {
-    history_.askFrom(judged_.odom_from_points);
+  /// Free evidence, careful sight, birth age, neighbourhood: asked of the scans before this one.
+  void judgePlaces(const SightView& before) {
     judged_.places.assign(judged_.points.size(), Place::kUnobserved);
     for (std::size_t i = 0; i < judged_.points.size(); ++i) {
-      const std::size_t later = i + kExpectedAhead;
-      const bool will_be_asked = later < judged_.points.size() && judged_.standing[later] == Standing::kIn;
-      if (will_be_asked) newness_.expect(scan_.echoes[later]);
-      if (judged_.standing[i] != Standing::kIn) continue;
-      judged_.places[i] = newness_.judge(scan_.echoes[i], judged_.points[i], clock_, history_);
+      const std::size_t later = i + kPrefetchAhead;
+      const bool will_be_asked = later < judged_.points.size() && judged_.roles[later] == ClusterRole::kConnects;
+      if (will_be_asked) places_.expect(in_voxels_.echoes[later]);
+      if (judged_.roles[i] != ClusterRole::kConnects) continue;
+      judged_.places[i] = places_.judge(in_voxels_.echoes[i], judged_.points[i], clock_, before);
     }
   }
 
-  void labelPlaces(EchoLabels& labels) const {
-    labels.assign(judged_.points.size());
+  /// Without objects every echo is judged by its place alone.
+  void proveByPlaces() {
+    proofs_.assign(judged_.points.size(), Proof::kNone);
     if (clock_.scan() == 1) return;  // nothing is known yet
     for (std::size_t i = 0; i < judged_.points.size(); ++i) {
-      if (scan_.inside[i] == 0) continue;
-      const bool is_ground = judged_.standing[i] != Standing::kIn;
-      labels.observed[i] = is_ground || judged_.places[i] != Place::kUnobserved;
-      labels.dynamic[i] = !config_.objects.enabled && judged_.places[i] == Place::kNew;
+      const bool is_new = in_voxels_.inside[i] != 0 && judged_.places[i] == Place::kNew;
+      if (is_new) proofs_[i] = Proof::kAlone;
     }
   }
 
-  void labelObjects(EchoLabels& labels) {
-    finder_.find(judged_, tracker_.expect(judged_.stamp), candidates_);
-    tracker_.update(judged_, history_, candidates_);
-    finder_.release(judged_, candidates_);
-    for (const Candidate& candidate : candidates_) {
-      if (!candidate.dynamic) continue;
-      for (const std::uint32_t echo : candidate.echoes) labels.dynamic[echo] = labels.observed[echo] = 1;
+  void write(EchoLabels& labels) const {
+    labels.assign(judged_.points.size());
+    const bool is_first_scan = clock_.scan() == 1;  // nothing is known yet
+    for (std::size_t i = 0; i < judged_.points.size(); ++i) {
+      const bool is_moving = proofs_[i] != Proof::kNone;
+      const bool is_ground = judged_.roles[i] != ClusterRole::kConnects;
+      const bool is_known = in_voxels_.inside[i] != 0 && (is_ground || judged_.places[i] != Place::kUnobserved);
+      labels.dynamic[i] = is_moving ? 1 : 0;
+      labels.observed[i] = is_moving || (is_known && !is_first_scan) ? 1 : 0;
     }
   }
-
-  EchoReason reasonOf(std::size_t i) const {
-    if (dynamic_[i] != 0) return EchoReason::kMoving;
-    if (judged_.is_echo[i] == 0) return EchoReason::kNoEcho;
-    if (scan_.inside[i] == 0) return EchoReason::kOutside;
-    if (judged_.standing[i] != Standing::kIn) return EchoReason::kGround;
-    switch (judged_.places[i]) {
-      case Place::kNew: return EchoReason::kNewAlone;
-      case Place::kAtSurface:
-      case Place::kSettled: return EchoReason::kSettled;
-      case Place::kUnobserved: break;
-    }
-    return EchoReason::kUnobserved;
-  }
-
-  /// De-shadowing is asked only where something is hit again; here it is asked of every voxel that is not hit.
-  MemoryCells cellsOf(const Newness3d& newness) const {
-    MemoryCells cells;
-    const auto size = static_cast<float>(newness.window().voxelSize());
-    newness.memory().forEach([&](const Index3& voxel, const VoxelRecord& record) {
-      if (record.last_hit == clock_.scan()) return;
-      const Eigen::Vector3f point = (voxel.cast<float>().array() + 0.5F) * size;
-      const bool settled = !clock_.isYoung(record.birth, record.was_free);
-      const double since = clock_.stampOf(record.last_hit);
-      auto& kind =
-          wasFree(config_.evidence, history_, point, since, true, settled) ? cells.seen_through : cells.shadowed;
-      kind.emplace_back((judged_.odom_from_points * point.cast<double>()).cast<float>());
-    });
-    return cells;
-  }
-  MemoryCells cellsOf(const Newness2d&) const { return {}; }
 
   Config config_;
   StreamGuard guard_;
-  Newness newness_;
+  PlaceJudge places_;
   ScanClock clock_;
-  SightHistory history_;
+  SightHistory sights_;
   Ground ground_;
-  CandidateFinder finder_;
+  Segmenter segmenter_;
   ObjectTracker tracker_;
+  Trimmer trimmer_;
 
-  GridScan scan_;
+  // Of the present scan; storage is kept from scan to scan.
+  GridScan in_voxels_;
   JudgedScan judged_;
-  Candidates candidates_;
-  std::vector<std::uint8_t> dynamic_;
+  Predictions predictions_;
+  Segments segments_;
+  Verdicts verdicts_;
+  std::vector<Proof> proofs_;  ///< per echo
 };
 
 }  // namespace
@@ -206,15 +194,16 @@ std::unique_ptr<Detector> makeEvidenceDetector2d(const Config& config) {
 double evidenceBytes(const Config& config, double echoes) {
   constexpr double kInGrid = sizeof(Eigen::Vector3f) + 1.0;  // place and inside
   constexpr double kJudged = sizeof(Eigen::Vector3f) + sizeof(float) + 1.0;
-  constexpr double kVerdict = sizeof(Standing) + sizeof(Place) + 1.0;
-  constexpr double kThings = 20.0;  // bytes an echo, about: candidates, tracks and their traces
+  constexpr double kDecided = sizeof(ClusterRole) + sizeof(Place) + sizeof(Proof);
+  constexpr double kObjects = 20.0;  // bytes per echo, about: segments, tracks and their traces
   const double reach = reachOf(config.region);
   const Eigen::Vector3d extent = GridWindow::extentOf(config.scrolling());
-  double bytes = roomFor((kInGrid + kJudged) * echoes) + kVerdict * echoes;
+  double bytes = roomFor((kInGrid + kJudged) * echoes) + kDecided * echoes;
   bytes += config.method == Method::kDonex2d ? Newness2d::bytesFor(extent) : Newness3d::bytesFor(extent);
   bytes += SightHistory::bytesFor(config.evidence.history_length, kHistorySpacing, echoes);
   bytes += Ground::bytesFor(reach, echoes);
-  return bytes + CandidateFinder::bytesFor(reach, config.objects, echoes) + kThings * echoes;
+  bytes += Segmenter::bytesFor(reach, config.objects, echoes) + Trimmer::bytesFor(reach, config.objects, echoes);
+  return bytes + kObjects * echoes;
 }
 
 }  // namespace donex

@@ -35,7 +35,7 @@ class MotionVoxelGridDetector : public ComparisonDetector<Detector> {
     ++scan_;
     placePoints(window(), in_grid, points_, is_echo_);
     ground_.fit(in_grid.origin * static_cast<float>(window().voxelSize()), points_, is_echo_);
-    sights_.askFrom(window().odomFromWindow());
+    const SightView before = sights_.seenFrom(window().odomFromWindow());
     std::unordered_map<VoxelKey, bool, VoxelHash> verdicts;
     for (std::size_t i = 0; i < labels.dynamic.size(); ++i) {
       const bool is_obstacle = in_grid.inside[i] != 0 && ground_.heightOf(points_[i]) > kGround;
@@ -43,7 +43,7 @@ class MotionVoxelGridDetector : public ComparisonDetector<Detector> {
       if (!is_obstacle) continue;
       const Index3 voxel = voxelOf(in_grid.echoes[i]);
       const auto [verdict, is_first] = verdicts.try_emplace(keyOf(voxel + window().minIndex()), false);
-      if (is_first) verdict->second = moves(voxel);
+      if (is_first) verdict->second = moves(voxel, before);
       labels.dynamic[i] = verdict->second ? 1 : 0;
     }
     for (const auto& verdict : verdicts) count(verdict.first);
@@ -77,14 +77,14 @@ class MotionVoxelGridDetector : public ComparisonDetector<Detector> {
     return static_cast<double>(std::bitset<64>(std::uint64_t{found->second.bits} << age & kWindow).count());
   }
 
-  bool moves(const Index3& in_window) const {
+  bool moves(const Index3& in_window, const SightView& before) const {
     const Index3 voxel = in_window + window().minIndex();
     double fixed = hitsOf(voxel);
     for (int axis = 0; axis < 3; ++axis) {
       fixed += kNeighbour * (hitsOf(voxel + Index3::Unit(axis)) + hitsOf(voxel - Index3::Unit(axis)));
     }
     const Eigen::Vector3f center = (in_window.cast<float>().array() + 0.5F) * static_cast<float>(window().voxelSize());
-    const double dynamic = sights_.ask(center, -std::numeric_limits<double>::infinity(), kScans).free;
+    const double dynamic = before.ask(center, -std::numeric_limits<double>::infinity(), kScans).free;
     return std::log((dynamic + 1.0) / (fixed + 1.0)) > kLeastRatio;
   }
 

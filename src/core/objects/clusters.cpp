@@ -25,31 +25,31 @@ int& Clusters::makeCell(int x, int y, int z) {
 }
 
 void Clusters::connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
-                       const std::vector<float>& heights, const std::vector<Standing>& standing) {
-  fill(sensor, echoes, heights, standing);
-  hangSkirt();
+                       const std::vector<float>& heights, const std::vector<ClusterRole>& roles) {
+  fill(sensor, echoes, heights, roles);
+  attachLowEchoes();
   for (int cell = 0; cell < static_cast<int>(cells_.size()); ++cell) join(cell);
   number();
   for (const Cell& cell : cells_) column_at_[columnOf(cell.x, cell.y)] = kNone;
 }
 
 void Clusters::fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
-                    const std::vector<float>& heights, const std::vector<Standing>& standing) {
+                    const std::vector<float>& heights, const std::vector<ClusterRole>& roles) {
   const auto per_cell = static_cast<float>(1.0 / settings_.cell);
   const auto highest = static_cast<float>(settings_.height);
   cells_.clear();
   cell_in_column_.clear();
-  skirt_.clear();
+  low_echoes_.clear();
   of_.assign(echoes.size(), kNone);
   for (std::size_t i = 0; i < echoes.size(); ++i) {
-    const bool in_height = standing[i] != Standing::kOut && heights[i] >= 0.0F && heights[i] <= highest;
+    const bool in_height = roles[i] != ClusterRole::kNone && heights[i] >= 0.0F && heights[i] <= highest;
     if (!in_height) continue;
     const int x = floorToInt((echoes[i].x() - sensor.x()) * per_cell) + width_ / 2;
     const int y = floorToInt((echoes[i].y() - sensor.y()) * per_cell) + width_ / 2;
     const int z = static_cast<int>(heights[i] * per_cell);
     if (x < 0 || x >= width_ || y < 0 || y >= width_) continue;
-    if (standing[i] == Standing::kSkirt) {
-      skirt_.push_back({static_cast<int>(i), x, y});
+    if (roles[i] == ClusterRole::kFollows) {
+      low_echoes_.push_back({static_cast<int>(i), x, y});
       continue;
     }
     int& cell = makeCell(x, y, z);
@@ -61,8 +61,8 @@ void Clusters::fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vect
   }
 }
 
-void Clusters::hangSkirt() {
-  for (const auto& [echo, x, y] : skirt_) {
+void Clusters::attachLowEchoes() {
+  for (const auto& [echo, x, y] : low_echoes_) {
     for (int z = 0; z <= std::min(1, layers_ - 1) && of_[static_cast<std::size_t>(echo)] == kNone; ++z) {
       of_[static_cast<std::size_t>(echo)] = cellAt(x, y, z);
     }
@@ -124,11 +124,18 @@ double Clusters::bytesFor(double reach, const Settings& settings, double echoes,
   return sizeof(int) * (std::pow(widthOf(reach, settings.cell), 2) + echoes) + kCellsAColumn * columns * a_cell;
 }
 
+Clusters::Settings clustersOf(const ObjectConfig& config, double finer) {
+  Clusters::Settings settings;
+  settings.cell = finer * config.cell;
+  settings.height = config.height;
+  return settings;
+}
+
 std::size_t Clusters::memoryBytes() const {
   const std::size_t numbers =
       column_at_.capacity() + cell_in_column_.capacity() + of_.capacity() + number_of_root_.capacity();
   return numbers * sizeof(int) + cells_.capacity() * sizeof(Cell) + echoes_in_.capacity() * sizeof(std::size_t) +
-         skirt_.capacity() * sizeof(skirt_[0]);
+         low_echoes_.capacity() * sizeof(low_echoes_[0]);
 }
 
 }  // namespace donex

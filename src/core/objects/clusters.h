@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/evidence/judged_scan.h"
+#include "donex/config.h"
 
 namespace donex {
 
@@ -25,7 +26,7 @@ class Clusters {
 
   /// `echoes` [m] in a frame whose z points up, `heights` above ground [m], one an echo.
   void connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
-               const std::vector<float>& heights, const std::vector<Standing>& standing);
+               const std::vector<float>& heights, const std::vector<ClusterRole>& roles);
 
   static constexpr int kNone = -1;
   /// Cluster of an echo, 0 to count() - 1, or kNone.
@@ -59,8 +60,8 @@ class Clusters {
   int& makeCell(int x, int y, int z);
   int rootOf(int cell);
   void fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
-            const std::vector<float>& heights, const std::vector<Standing>& standing);
-  void hangSkirt();
+            const std::vector<float>& heights, const std::vector<ClusterRole>& roles);
+  void attachLowEchoes();
   void join(int cell);
   void number();
 
@@ -70,9 +71,12 @@ class Clusters {
   std::vector<int> cell_in_column_;  ///< by column, z: number of the cell, or kNone
   std::vector<Cell> cells_;
   std::vector<int> of_;
-  std::vector<std::array<int, 3>> skirt_;  ///< echo, x, y
+  std::vector<std::array<int, 3>> low_echoes_;  ///< echo, x, y
   std::vector<int> number_of_root_;
   std::vector<std::size_t> echoes_in_;  ///< by cluster
 };
+
+/// What a configuration says of clusters; their cells are `finer` times the configured edge.
+Clusters::Settings clustersOf(const ObjectConfig& config, double finer = 1.0);
 
 }  // namespace donex

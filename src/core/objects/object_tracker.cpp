@@ -26,145 +26,155 @@ constexpr double kSettledFragment = 0.2;  // share
 
 ObjectTracker::ObjectTracker(const ObjectConfig& config) : config_(config), traces_(kLookBack.back(), kLost) {}
 
-void ObjectTracker::update(const JudgedScan& scan, const SightHistory& history, Candidates& candidates) {
+void ObjectTracker::predict(double stamp, Predictions& predictions) const {
+  predictions.clear();
+  for (const Track& track : tracks_) {
+    if (!track.dynamic) continue;
+    const bool goes_on = stamp - track.last_moved_whole < kMovesOn && track.velocity.norm() > kSurelyMoving;
+    predictions.push_back({track.centerAt(stamp), track.extent, track.full_extent, goes_on});
+  }
+}
+
+void ObjectTracker::update(const JudgedScan& scan, const Segments& segments, const Predictions& predictions,
+                           const ScanSight& now, Verdicts& verdicts) {
   objects_.clear();
-  expect(scan.stamp, &Track::full_extent);
+  verdicts.assign(segments.size(), Verdict{});
   sensor_ = scan.odom_from_points * scan.sensor.cast<double>();
   traces_.begin(scan.stamp);
-  match(scan.stamp, candidates);
-  const MotionEvidence evidence(scan, history);
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    Candidate& candidate = candidates[i];
-    if (isTooLong(candidate)) continue;
-    Track& track = trackOf(i, scan.stamp, candidate);
-    if (config_.motion) weigh(track, evidence, scan.stamp, candidate);
-    decide(track, scan.stamp, candidate);
-    if (config_.motion) track.trace = traces_.leave(scan, candidate, track.trace);
-    if (track.ever_dynamic) describe(track, scan, candidate);
+  match(scan.stamp, segments);
+  const MotionTests tests(scan, now);
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const Segment& segment = segments[i];
+    if (isTooLong(segment)) continue;
+    Track& track = trackOf(i, scan.stamp, segment);
+    if (config_.motion) testMotion(track, tests, scan.stamp, segment);
+    verdicts[i] = decide(track, scan.stamp, segment);
+    if (config_.motion) track.trace = traces_.leave(scan, segment, track.trace);
+    if (track.ever_dynamic) describe(track, verdicts[i].proof, scan, segment);
   }
-  complete(candidates);
+  complete(segments, predictions, verdicts);
   const auto is_lost = [&](const Track& track) { return track.last_seen < scan.stamp - kLost; };
   tracks_.erase(std::remove_if(tracks_.begin(), tracks_.end(), is_lost), tracks_.end());
 }
 
-const std::vector<Expected>& ObjectTracker::expect(double stamp, Eigen::Vector3d Track::*extent) {
-  expected_.clear();
-  for (const Track& track : tracks_) {
-    if (!track.dynamic) continue;
-    const bool goes_on = stamp - track.last_moved_whole < kMovesOn && track.velocity.norm() > kSurelyMoving;
-    expected_.push_back({track.centerAt(stamp), track.*extent, goes_on});
-  }
-  return expected_;
-}
-
-ObjectTracker::Track& ObjectTracker::trackOf(std::size_t candidate_index, double stamp, const Candidate& candidate) {
-  const int known = track_of_[candidate_index];
+ObjectTracker::Track& ObjectTracker::trackOf(std::size_t segment_index, double stamp, const Segment& segment) {
+  const int known = track_of_[segment_index];
   if (known >= 0) {
-    follow(tracks_[static_cast<std::size_t>(known)], stamp, candidate);
+    follow(tracks_[static_cast<std::size_t>(known)], stamp, segment);
     return tracks_[static_cast<std::size_t>(known)];
   }
   Track track;
   track.id = next_id_++;
   track.first_seen = track.last_seen = stamp;
-  track.center = candidate.center();
-  track.extent = track.full_extent = candidate.extent();
+  track.center = segment.center();
+  track.extent = track.full_extent = segment.extent();
   tracks_.push_back(std::move(track));
   return tracks_.back();
 }
 
-void ObjectTracker::match(double stamp, const Candidates& candidates) {
+void ObjectTracker::match(double stamp, const Segments& segments) {
   pairs_.clear();
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     const Track& track = tracks_[t];
     const Eigen::Vector3d predicted = track.centerAt(stamp);
     const double step = track.first_seen < track.last_seen ? kFollowed : kLargestStep;
-    for (std::size_t c = 0; c < candidates.size(); ++c) {
-      const double distance = (candidates[c].center() - predicted).norm();
-      if (distance > step || !alike(track.extent, candidates[c].extent())) continue;
+    for (std::size_t c = 0; c < segments.size(); ++c) {
+      const double distance = (segments[c].center() - predicted).norm();
+      if (distance > step || !alike(track.extent, segments[c].extent())) continue;
       pairs_.push_back({distance, t, c});
     }
   }
   // The nearest pairs first: what stands still finds itself and leaves the rest to what moves.
   std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
-    return std::tie(a.distance, a.track, a.candidate) < std::tie(b.distance, b.track, b.candidate);
+    return std::tie(a.distance, a.track, a.segment) < std::tie(b.distance, b.track, b.segment);
   });
-  track_of_.assign(candidates.size(), -1);
+  track_of_.assign(segments.size(), -1);
   for (Track& track : tracks_) track.is_found = false;
   for (const Pair& pair : pairs_) {
-    if (tracks_[pair.track].is_found || track_of_[pair.candidate] >= 0) continue;
+    if (tracks_[pair.track].is_found || track_of_[pair.segment] >= 0) continue;
     tracks_[pair.track].is_found = true;
-    track_of_[pair.candidate] = static_cast<int>(pair.track);
+    track_of_[pair.segment] = static_cast<int>(pair.track);
   }
 }
 
-void ObjectTracker::follow(Track& track, double stamp, const Candidate& candidate) {
+void ObjectTracker::follow(Track& track, double stamp, const Segment& segment) {
   const double elapsed = stamp - track.last_seen;
   if (elapsed > 0.0) {
-    const Eigen::Vector3d velocity = (candidate.center() - track.center) / elapsed;
+    const Eigen::Vector3d velocity = (segment.center() - track.center) / elapsed;
     const bool is_second = track.last_seen <= track.first_seen;
     track.velocity =
         is_second ? velocity : Eigen::Vector3d((1.0 - kSmoothing) * track.velocity + kSmoothing * velocity);
   }
-  track.center = candidate.center();
-  track.extent = candidate.extent();
+  track.center = segment.center();
+  track.extent = segment.extent();
   track.full_extent = track.extent.cwiseMax(kForgetExtent * track.full_extent);
   track.last_seen = stamp;
 }
 
-void ObjectTracker::weigh(Track& track, const MotionEvidence& evidence, double stamp,
-                          const Candidate& candidate) const {
+void ObjectTracker::testMotion(Track& track, const MotionTests& tests, double stamp, const Segment& segment) const {
   bool receded = false, advanced = false, moved = false;
-  // What was cut out where it was expected cannot prove by its place that it went there.
+  // What was cut out where it was predicted cannot prove by its place that it went there.
   Trace trace;
-  const bool may_tell = !candidate.cut_out && !isMostlySettled(candidate);
+  const bool may_tell = !segment.cut_out && !isMostlySettled(segment);
   for (const double ago : kLookBack) {
     if (!may_tell || !traces_.find(track.trace, stamp - ago, trace)) continue;
-    const Former former = evidence.lookBack(trace);
+    const FormerPlace former = tests.lookBack(trace);
     receded |= former.left >= config_.min_echoes && former.left > former.still;
-    advanced |= former.left >= kLeastLeft && candidate.new_echoes >= config_.min_echoes;
-    moved = moved || evidence.hasMoved(trace, candidate);
+    advanced |= former.left >= kLeastLeft && segment.new_echoes >= config_.min_echoes;
+    moved = moved || tests.hasMoved(trace, segment);
   }
   track.receding_scans = receded ? track.receding_scans + 1 : 0;
   track.advancing_scans = advanced ? track.advancing_scans + 1 : 0;
   track.moving_scans = moved ? track.moving_scans + 1 : 0;
 }
 
-void ObjectTracker::decide(Track& track, double stamp, Candidate& candidate) const {
-  const bool moves_whole = track.receding_scans >= kScansToBelieve || track.moving_scans >= kScansToBelieve;
-  const bool has_evidence = moves_whole || track.advancing_scans >= kScansToBelieve || isNew(candidate, config_);
-  const bool moves = has_evidence && !isThin(candidate, sensor_);
-  if (moves_whole) track.last_moved_whole = stamp;
-  if (moves) track.last_motion = stamp;
+/// All proofs of motion, those of the whole segment first.
+Proof ObjectTracker::proofOf(const Track& track, double stamp, const Segment& segment) const {
+  if (!isThin(segment, sensor_)) {
+    if (track.receding_scans >= kScansToBelieve) return Proof::kRearReceded;
+    if (track.moving_scans >= kScansToBelieve) return Proof::kShapeElsewhere;
+    if (track.advancing_scans >= kScansToBelieve) return Proof::kEndsMoved;
+    if (isNew(segment, config_)) return Proof::kEnteredFree;
+  }
   const bool just_stopped =
-      track.dynamic && !isMostlySettled(candidate) && stamp - track.last_motion <= config_.stop_time;
-  track.dynamic = moves || just_stopped;
-  track.ever_dynamic = track.ever_dynamic || track.dynamic;
-  candidate.dynamic = track.dynamic;
-  candidate.moves_whole = stamp - track.last_moved_whole <= kReleaseAfter;
+      track.dynamic && !isMostlySettled(segment) && stamp - track.last_motion <= config_.stop_time;
+  return just_stopped ? Proof::kMovedBefore : Proof::kNone;
 }
 
-void ObjectTracker::complete(Candidates& candidates) const {
+Verdict ObjectTracker::decide(Track& track, double stamp, const Segment& segment) const {
+  const Proof proof = proofOf(track, stamp, segment);
+  const bool is_proven_now = proof != Proof::kNone && proof != Proof::kMovedBefore;
+  if (track.receding_scans >= kScansToBelieve || track.moving_scans >= kScansToBelieve) track.last_moved_whole = stamp;
+  if (is_proven_now) track.last_motion = stamp;
+  track.dynamic = proof != Proof::kNone;
+  track.ever_dynamic = track.ever_dynamic || track.dynamic;
+  return {proof, stamp - track.last_moved_whole <= kReleaseAfter};
+}
+
+void ObjectTracker::complete(const Segments& segments, const Predictions& predictions, Verdicts& verdicts) {
   // A pole before a vehicle leaves fragments of it, too small to tell anything themselves.
-  for (const Expected& whole : expected_) {
-    if (!whole.moves_whole || !whole.isLong()) continue;
-    const Eigen::Array3d half = 0.5 * whole.extent.array() + kRim;
-    for (Candidate& candidate : candidates) {
-      const bool settled = candidate.settled_echoes > kSettledFragment * static_cast<double>(candidate.echoes.size());
-      const bool inside = ((candidate.low - whole.center).array() > -half).all() &&
-                          ((candidate.high - whole.center).array() < half).all();
-      if (inside && !settled && !candidate.dynamic) candidate.dynamic = candidate.moves_whole = true;
+  for (const Prediction& whole : predictions) {
+    if (!whole.moves_whole || !Prediction::isLong(whole.full_extent)) continue;
+    const Eigen::Array3d half = 0.5 * whole.full_extent.array() + kRim;
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+      const Segment& segment = segments[i];
+      const bool settled = segment.settled_echoes > kSettledFragment * static_cast<double>(segment.echoes.size());
+      const bool inside =
+          ((segment.low - whole.center).array() > -half).all() && ((segment.high - whole.center).array() < half).all();
+      if (inside && !settled && !verdicts[i].moves()) verdicts[i] = {Proof::kPartOfMoving, true};
     }
   }
 }
 
-void ObjectTracker::describe(const Track& track, const JudgedScan& scan, const Candidate& candidate) {
+void ObjectTracker::describe(const Track& track, Proof proof, const JudgedScan& scan, const Segment& segment) {
   Object object;
   object.id = track.id;
   object.velocity = track.velocity;
   object.dynamic = track.dynamic;
+  object.proof = proof;
   object.age = scan.stamp - track.first_seen;
-  object.echoes = static_cast<std::uint32_t>(candidate.echoes.size());
-  fitBox(candidate.echoes, scan.points, scan.odom_from_points, track.velocity, object);
+  object.echoes = static_cast<std::uint32_t>(segment.echoes.size());
+  fitBox(segment.echoes, scan.points, scan.odom_from_points, track.velocity, object);
   objects_.push_back(object);
 }
 
@@ -177,8 +187,7 @@ void ObjectTracker::reset() {
 
 std::size_t ObjectTracker::memoryBytes() const {
   return tracks_.capacity() * sizeof(Track) + pairs_.capacity() * sizeof(Pair) + traces_.memoryBytes() +
-         expected_.capacity() * sizeof(Expected) + track_of_.capacity() * sizeof(int) +
-         objects_.capacity() * sizeof(Object);
+         track_of_.capacity() * sizeof(int) + objects_.capacity() * sizeof(Object);
 }
 
 }  // namespace donex

@@ -4,12 +4,12 @@
 #include <limits>
 #include <vector>
 
-#include "core/objects/motion_evidence.h"
+#include "core/objects/motion_tests.h"
 #include "donex/object.h"
 
 namespace donex {
 
-/// Follows candidates from scan to scan. An object moves
+/// Follows segments from scan to scan. An object moves
 ///  - where enough of its echoes are new: its front comes into space that was free.
 /// With ObjectConfig::motion also
 ///  - where its former place is now seen free: its rear has receded. This finds a vehicle ahead at the
@@ -20,12 +20,13 @@ class ObjectTracker {
  public:
   explicit ObjectTracker(const ObjectConfig& config);
 
-  /// Decides `dynamic` of every candidate of a scan. `history` is asked in the scan's points; its newest
-  /// scan is this one.
-  void update(const JudgedScan& scan, const SightHistory& history, Candidates& candidates);
+  /// Where the moving objects should be at `stamp` [s].
+  void predict(double stamp, Predictions& predictions) const;
 
-  /// Where the moving objects should be at `stamp` [s]. Valid until the next call.
-  const std::vector<Expected>& expect(double stamp) { return expect(stamp, &Track::extent); }
+  /// Follows the segments of a scan and decides about each. `predictions` are those for the scan; `now`: what the scan
+  /// sees, asked in its points.
+  void update(const JudgedScan& scan, const Segments& segments, const Predictions& predictions, const ScanSight& now,
+              Verdicts& verdicts);
 
   /// Objects of the last scan that move, or moved since they are followed.
   const std::vector<Object>& objects() const { return objects_; }
@@ -51,25 +52,24 @@ class ObjectTracker {
   };
   struct Pair {
     double distance;
-    std::size_t track, candidate;
+    std::size_t track, segment;
   };
 
-  void match(double stamp, const Candidates& candidates);
-  Track& trackOf(std::size_t candidate_index, double stamp, const Candidate& candidate);
-  static void follow(Track& track, double stamp, const Candidate& candidate);
-  void weigh(Track& track, const MotionEvidence& evidence, double stamp, const Candidate& candidate) const;
-  void decide(Track& track, double stamp, Candidate& candidate) const;
-  const std::vector<Expected>& expect(double stamp, Eigen::Vector3d Track::*extent);
-  void complete(Candidates& candidates) const;
-  void describe(const Track& track, const JudgedScan& scan, const Candidate& candidate);
+  void match(double stamp, const Segments& segments);
+  Track& trackOf(std::size_t segment_index, double stamp, const Segment& segment);
+  static void follow(Track& track, double stamp, const Segment& segment);
+  void testMotion(Track& track, const MotionTests& tests, double stamp, const Segment& segment) const;
+  Proof proofOf(const Track& track, double stamp, const Segment& segment) const;
+  Verdict decide(Track& track, double stamp, const Segment& segment) const;
+  static void complete(const Segments& segments, const Predictions& predictions, Verdicts& verdicts);
+  void describe(const Track& track, Proof proof, const JudgedScan& scan, const Segment& segment);
 
   ObjectConfig config_;
   Eigen::Vector3d sensor_ = Eigen::Vector3d::Zero();  ///< of the present scan, odometry frame [m]
   TraceHistory traces_;
   std::vector<Track> tracks_;
-  std::vector<Expected> expected_;
   std::vector<Pair> pairs_;
-  std::vector<int> track_of_;  ///< by candidate, -1 where it is followed for the first time
+  std::vector<int> track_of_;  ///< by segment, -1 where it is followed for the first time
   std::vector<Object> objects_;
   std::uint32_t next_id_ = 1;
 };

@@ -29,11 +29,11 @@ void TraceHistory::forget(double until) {
   sheets_.erase(sheets_.begin(), first);
 }
 
-TraceHistory::Id TraceHistory::leave(const JudgedScan& scan, const Candidate& candidate, Id before) {
+TraceHistory::Id TraceHistory::leave(const JudgedScan& scan, const Segment& segment, Id before) {
   Sheet& sheet = sheets_.back();
   const auto first = static_cast<std::uint32_t>(sheet.points.size());
-  visitSome(scan, candidate, kPoints, [&](const Eigen::Vector3d& point) { sheet.points.push_back(point); });
-  sheet.entries.push_back({candidate.center(), first, static_cast<std::uint32_t>(sheet.points.size()) - first, before});
+  visitSome(scan, segment, kPoints, [&](const Eigen::Vector3d& point) { sheet.points.push_back(point); });
+  sheet.entries.push_back({segment.center(), first, static_cast<std::uint32_t>(sheet.points.size()) - first, before});
   return {oldest_ + static_cast<std::uint32_t>(sheets_.size()) - 1,
           static_cast<std::uint32_t>(sheet.entries.size()) - 1};
 }

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "core/objects/candidate.h"
+#include "core/objects/segment.h"
 
 namespace donex {
 
@@ -22,12 +22,12 @@ struct Trace {
   const Eigen::Vector3d* end() const { return first + points; }
 };
 
-/// Calls visit(echo in the odometry frame [m]) for `at_most` of the candidate's echoes, spread over all of them.
+/// Calls visit(echo in the odometry frame [m]) for `at_most` of the segment's echoes, spread over all of them.
 template <class Visit>
-void visitSome(const JudgedScan& scan, const Candidate& candidate, std::size_t at_most, Visit&& visit) {
-  const std::size_t stride = candidate.echoes.size() / at_most + 1;
-  for (std::size_t i = 0; i < candidate.echoes.size(); i += stride) {
-    visit(Eigen::Vector3d(scan.odom_from_points * scan.points[candidate.echoes[i]].cast<double>()));
+void visitSome(const JudgedScan& scan, const Segment& segment, std::size_t at_most, Visit&& visit) {
+  const std::size_t stride = segment.echoes.size() / at_most + 1;
+  for (std::size_t i = 0; i < segment.echoes.size(); i += stride) {
+    visit(Eigen::Vector3d(scan.odom_from_points * scan.points[segment.echoes[i]].cast<double>()));
   }
 }
 
@@ -49,8 +49,8 @@ class TraceHistory {
   /// The next scan [s]: forgets what will not be asked for any more. Stamps grow.
   void begin(double stamp);
 
-  /// The candidate's trace in the present scan; `before`: the same thing's last one.
-  Id leave(const JudgedScan& scan, const Candidate& candidate, Id before);
+  /// The segment's trace in the present scan; `before`: the same thing's last one.
+  Id leave(const JudgedScan& scan, const Segment& segment, Id before);
 
   /// True where the thing whose last trace is `latest` left one at `stamp` [s] or earlier; the last of these. Valid
   /// until the next call of another kind.

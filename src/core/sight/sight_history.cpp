@@ -10,7 +10,8 @@ void SightHistory::add(const Scan& scan, const std::vector<std::uint8_t>& is_ech
   const bool too_soon = !kept_.empty() && scan.stamp < kept_.back().stamp + 0.9 * spacing_;
   if (too_soon) return;
   forget(scan.stamp - length_);
-  Kept next{scan.stamp, scan.odomFromSensor().inverse(), {}, {}};
+  if (kept_.size() == SightView::kMostScans) forget(kept_[1].stamp);
+  Kept next{scan.stamp, scan.odomFromSensor().inverse(), {}};
   if (!spares_.empty()) {
     next.image = std::move(spares_.back());
     spares_.pop_back();
@@ -29,14 +30,22 @@ void SightHistory::forget(double until) {
 
 void SightHistory::reset() { forget(std::numeric_limits<double>::infinity()); }
 
-void SightHistory::askFrom(const Eigen::Isometry3d& odom_from_asked) {
-  for (Kept& kept : kept_) kept.sensor_from_asked = (kept.sensor_from_odom * odom_from_asked).cast<float>();
+SightView SightHistory::seenFrom(const Eigen::Isometry3d& odom_from_points) const {
+  SightView view;
+  for (auto kept = kept_.rbegin(); kept != kept_.rend(); ++kept) {
+    view.kept_[view.count_++] = {kept->stamp, sightOf(*kept, odom_from_points)};
+  }
+  return view;
 }
 
-SightHistory::Evidence SightHistory::ask(const Eigen::Vector3f& point, double since, int enough) const {
+ScanSight SightHistory::newestSeenFrom(const Eigen::Isometry3d& odom_from_points) const {
+  return kept_.empty() ? ScanSight() : sightOf(kept_.back(), odom_from_points);
+}
+
+SightView::Evidence SightView::ask(const Eigen::Vector3f& point, double since, int enough) const {
   Evidence evidence;
-  for (auto kept = kept_.rbegin(); kept != kept_.rend() && kept->stamp > since; ++kept) {
-    switch (kept->image.at(kept->sensor_from_asked * point, margin_)) {
+  for (std::size_t i = 0; i < count_ && kept_[i].stamp > since; ++i) {
+    switch (kept_[i].sight.at(point)) {
       case SightImage::Sight::kFree: ++evidence.free; break;
       case SightImage::Sight::kSurface: ++evidence.surface; break;
       case SightImage::Sight::kHidden: ++evidence.hidden; break;
@@ -45,16 +54,6 @@ SightHistory::Evidence SightHistory::ask(const Eigen::Vector3f& point, double si
     if (evidence.free >= enough) break;
   }
   return evidence;
-}
-
-SightImage::Sight SightHistory::askNewest(const Eigen::Vector3f& point, float margin) const {
-  if (kept_.empty()) return SightImage::Sight::kUnknown;
-  return kept_.back().image.at(kept_.back().sensor_from_asked * point, margin);
-}
-
-SightImage::Sight SightHistory::askThroughGaps(const Eigen::Vector3f& point, float margin) const {
-  if (kept_.empty()) return SightImage::Sight::kUnknown;
-  return kept_.back().image.throughGaps(kept_.back().sensor_from_asked * point, margin);
 }
 
 double SightHistory::bytesFor(double length, double spacing, double echoes) {

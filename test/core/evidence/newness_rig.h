@@ -36,11 +36,11 @@ class Rig {
     GridScan in_grid;
     window.enter(scan, in_grid);
     const Eigen::Vector3d corner = window.minIndex().template cast<double>() * window.voxelSize();
-    history.askFrom(window.odomFromGrid() * Eigen::Translation3d(corner));
+    before = history.seenFrom(window.odomFromGrid() * Eigen::Translation3d(corner));
     for (std::size_t i = 0; i < scan.echoes.size(); ++i) {
       if (in_grid.inside[i] == 0) continue;
       const Eigen::Vector3f point = in_grid.echoes[i] * static_cast<float>(window.voxelSize());
-      check(in_grid.echoes[i], point, newness.judge(in_grid.echoes[i], point, clock, history));
+      check(in_grid.echoes[i], point, newness.judge(in_grid.echoes[i], point, clock, before));
     }
     history.add(scan, std::vector<std::uint8_t>(scan.echoes.size(), 1));
   }
@@ -55,6 +55,7 @@ class Rig {
   Newness newness;
   ScanClock clock;
   SightHistory history;
+  SightView before;  ///< of the scans before the present one, asked in its points
 };
 
 /// Walls ahead by sector, each now near, now far, now gone; the vehicle drives and turns.

@@ -43,7 +43,7 @@ class AgainstThePlainRules : public ::testing::TestWithParam<Case> {
       const Scan scan = room.next();
       oracle.begin(scan);
       rig.process(scan, [&](const Eigen::Vector3f& in_window, const Eigen::Vector3f& point, Place place) {
-        const Place expected = oracle.judge(in_window, point, rig.history);
+        const Place expected = oracle.judge(in_window, point, rig.before);
         if (place != expected && different++ == 0) {
           ADD_FAILURE() << "scan " << k << " at " << in_window.transpose() << ": " << static_cast<int>(place)
                         << " instead of " << static_cast<int>(expected);

@@ -17,18 +17,18 @@ struct Echoes {
   Eigen::Vector3f sensor = Eigen::Vector3f::Zero();
   std::vector<Eigen::Vector3f> points;
   std::vector<float> heights;
-  std::vector<Standing> standing;
+  std::vector<ClusterRole> roles;
 
-  void add(float x, float y, float height, Standing how = Standing::kIn) {
+  void add(float x, float y, float height, ClusterRole how = ClusterRole::kConnects) {
     points.emplace_back(sensor.x() + x, sensor.y() + y, height - 1.5F);  // the ground lies below the sensor
     heights.push_back(height);
-    standing.push_back(how);
+    roles.push_back(how);
   }
 };
 
 std::vector<int> clustersOf(const Echoes& echoes, double reach, const Clusters::Settings& settings) {
   Clusters clusters(reach, settings);
-  clusters.connect(echoes.sensor, echoes.points, echoes.heights, echoes.standing);
+  clusters.connect(echoes.sensor, echoes.points, echoes.heights, echoes.roles);
   std::vector<int> of;
   for (std::size_t i = 0; i < echoes.points.size(); ++i) of.push_back(clusters.of(i));
   return of;
@@ -44,16 +44,16 @@ class BruteForce {
     std::map<Cell, int> label;
     for (std::size_t i = 0; i < cell_of.size(); ++i) {
       cell_of[i] = cellAt(echoes, i);
-      in[i] = echoes.standing[i] != Standing::kOut && echoes.heights[i] >= 0.0F &&
+      in[i] = echoes.roles[i] != ClusterRole::kNone && echoes.heights[i] >= 0.0F &&
               echoes.heights[i] <= static_cast<float>(settings.height) && std::abs(cell_of[i][0]) <= edge_ &&
               std::abs(cell_of[i][1]) <= edge_;
-      if (in[i] && echoes.standing[i] == Standing::kIn) label.emplace(cell_of[i], static_cast<int>(label.size()));
+      if (in[i] && echoes.roles[i] == ClusterRole::kConnects) label.emplace(cell_of[i], static_cast<int>(label.size()));
     }
     spread(label);
     std::map<int, int> number;
     for (std::size_t i = 0; i < cell_of.size(); ++i) {
       Cell cell = cell_of[i];
-      if (echoes.standing[i] == Standing::kSkirt) cell[2] = label.count({cell[0], cell[1], 0}) != 0 ? 0 : 1;
+      if (echoes.roles[i] == ClusterRole::kFollows) cell[2] = label.count({cell[0], cell[1], 0}) != 0 ? 0 : 1;
       const auto found = label.find(cell);
       const bool belongs = in[i] && found != label.end();
       of_.push_back(belongs ? number.emplace(found->second, static_cast<int>(number.size())).first->second
@@ -107,7 +107,8 @@ TEST(Clusters, ConnectWhatBruteForceConnects) {
   const auto draw = [&](double low, double high) {
     return static_cast<float>(std::uniform_real_distribution<double>(low, high)(random));
   };
-  constexpr std::array<Standing, 4> kStandings{Standing::kIn, Standing::kIn, Standing::kSkirt, Standing::kIn};
+  constexpr std::array<ClusterRole, 4> kStandings{ClusterRole::kConnects, ClusterRole::kConnects, ClusterRole::kFollows,
+                                                  ClusterRole::kConnects};
   int clusters_in_all = 0, echoes_in_all = 0;
   for (int round = 0; round < 60; ++round) {
     const double reach = round % 3 == 0 ? 8.0 : 40.0;
@@ -119,12 +120,12 @@ TEST(Clusters, ConnectWhatBruteForceConnects) {
     for (int i = 0; i < 60; ++i) {
       const float x = draw(-spread, spread), y = draw(-spread, spread), height = draw(0.0, 2.6);
       for (int k = 0; k < 4; ++k) {
-        const Standing standing = i % 10 == 0 ? Standing::kOut : kStandings[static_cast<std::size_t>(k)];
-        echoes.add(x + draw(-0.6, 0.6), y + draw(-0.6, 0.6), height + draw(-0.4, 0.4), standing);
+        const ClusterRole roles = i % 10 == 0 ? ClusterRole::kNone : kStandings[static_cast<std::size_t>(k)];
+        echoes.add(x + draw(-0.6, 0.6), y + draw(-0.6, 0.6), height + draw(-0.4, 0.4), roles);
       }
     }
     Clusters clusters(reach, settings);
-    clusters.connect(echoes.sensor, echoes.points, echoes.heights, echoes.standing);
+    clusters.connect(echoes.sensor, echoes.points, echoes.heights, echoes.roles);
     const BruteForce expected(echoes, reach, settings);
     ASSERT_EQ(clusters.count(), expected.count()) << "round " << round;
     for (std::size_t i = 0; i < echoes.points.size(); ++i) {
@@ -179,7 +180,7 @@ TEST(Clusters, TheSkirtHangsOnWhatStandsAboveItAndConnectsNothing) {
   Echoes echoes;
   echoes.add(5.0F, 0.1F, 0.4F);  // two things,
   echoes.add(6.2F, 0.1F, 0.4F);
-  for (int i = 0; i <= 8; ++i) echoes.add(5.0F + 0.15F * static_cast<float>(i), 0.1F, 0.2F, Standing::kSkirt);
+  for (int i = 0; i <= 8; ++i) echoes.add(5.0F + 0.15F * static_cast<float>(i), 0.1F, 0.2F, ClusterRole::kFollows);
   const std::vector<int> of = clustersOf(echoes, 20.0, kSettings);
   EXPECT_EQ(of[0], 0);
   EXPECT_EQ(of[1], 1) << "joined by the ground between them";
@@ -207,9 +208,9 @@ TEST(Clusters, EachScanStartsAnew) {
   few.add(0.1F, 0.1F, 1.0F);
   few.add(2.1F, 0.1F, 1.0F);
   Clusters clusters(60.0, kSettings);
-  clusters.connect(many.sensor, many.points, many.heights, many.standing);
+  clusters.connect(many.sensor, many.points, many.heights, many.roles);
   EXPECT_GT(clusters.count(), 5);
-  clusters.connect(few.sensor, few.points, few.heights, few.standing);
+  clusters.connect(few.sensor, few.points, few.heights, few.roles);
   EXPECT_EQ(clusters.count(), 2);
   clusters.connect({0.0F, 0.0F, 0.0F}, {}, {}, {});
   EXPECT_EQ(clusters.count(), 0);

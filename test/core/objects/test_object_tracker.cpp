@@ -4,44 +4,47 @@
 
 #include <gtest/gtest.h>
 
-#include "core/objects/candidate_finder.h"
 #include "core/objects/object_tracker.h"
-#include "support/judged_things.h"
+#include "core/objects/segmenter.h"
+#include "support/judged_scene.h"
 
 namespace donex {
 namespace {
 
-using testing::JudgedThings;
+using testing::JudgedScene;
 
 const SightImage::Reading kReading{true, 0.038};
 
 /// What the detector does with a judged scan.
 class Followed {
  public:
-  explicit Followed(const ObjectConfig& config = {}) : finder_(60.0, config), tracker(config) {}
+  explicit Followed(const ObjectConfig& config = {}) : segmenter_(60.0, config), tracker(config) {}
 
   /// Number of the scan's echoes that move.
-  std::size_t step(const JudgedThings& things) {
+  std::size_t step(const JudgedScene& things) {
     history_.add(things.scan(), things.judged.is_echo);
-    history_.askFrom(things.judged.odom_from_points);
-    finder_.find(things.judged, tracker.expect(things.judged.stamp), candidates);
-    tracker.update(things.judged, history_, candidates);
+    tracker.predict(things.judged.stamp, predictions_);
+    segmenter_.segment(things.judged, predictions_, segments);
+    tracker.update(things.judged, segments, predictions_, history_.newestSeenFrom(things.judged.odom_from_points),
+                   verdicts);
     std::size_t moving = 0;
-    for (const Candidate& candidate : candidates) moving += candidate.dynamic ? candidate.echoes.size() : 0U;
+    for (std::size_t i = 0; i < segments.size(); ++i) moving += verdicts[i].moves() ? segments[i].echoes.size() : 0U;
     return moving;
   }
 
  private:
   SightHistory history_{2.0, 0.0, 0.5F, kReading};
-  CandidateFinder finder_;
+  Segmenter segmenter_;
+  Predictions predictions_;
 
  public:
   ObjectTracker tracker;
-  Candidates candidates;
+  Segments segments;
+  Verdicts verdicts;
 };
 
 /// The rear and a side of a vehicle whose rear is at x.
-void addVehicle(JudgedThings& things, double x, double y, Place place) {
+void addVehicle(JudgedScene& things, double x, double y, Place place) {
   things.face({x, y, 0.3}, {0.0, 1.8, 0.0}, 1.2, place, 0.05);
   things.face({x, y, 0.3}, {4.0, 0.0, 0.0}, 1.2, place, 0.05);
 }
@@ -50,7 +53,7 @@ TEST(ObjectTracker, SomethingNewIsFollowedUnderOneNumber) {
   Followed followed;
   std::uint32_t id = 0;
   for (int k = 0; k < 20; ++k) {
-    JudgedThings things(0.1 * k);
+    JudgedScene things(0.1 * k);
     addVehicle(things, 5.0 + 0.8 * k, 2.0, Place::kNew);
     EXPECT_EQ(followed.step(things), things.judged.points.size());
     ASSERT_EQ(followed.tracker.objects().size(), 1U);
@@ -72,7 +75,7 @@ TEST(ObjectTracker, TwoThatPassEachOtherKeepTheirNumbers) {
   Followed followed;
   std::array<std::uint32_t, 2> ids{};
   for (int k = 0; k < 20; ++k) {
-    JudgedThings things(0.1 * k);
+    JudgedScene things(0.1 * k);
     addVehicle(things, 4.0 + 1.0 * k, 2.0, Place::kNew);
     addVehicle(things, 24.0 - 1.0 * k, 6.0, Place::kNew);
     followed.step(things);
@@ -89,7 +92,7 @@ TEST(ObjectTracker, AVehicleAheadAtTheSameSpeedIsFoundByItsRear) {
   Followed followed;
   for (int k = 0; k < 30; ++k) {
     const double sensor_x = 1.2 * k;
-    JudgedThings things(0.1 * k, sensor_x);
+    JudgedScene things(0.1 * k, sensor_x);
     // Only ever in its own shadow: nothing of it is new.
     things.face({sensor_x + 12.0, -0.9, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kUnobserved, 0.05);
     const std::size_t moving = followed.step(things);
@@ -107,7 +110,7 @@ TEST(ObjectTracker, WithoutMotionOnlyNewEchoesTell) {
   for (const Place place : {Place::kUnobserved, Place::kNew}) {
     Followed followed(config);
     for (int k = 0; k < 30; ++k) {
-      JudgedThings things(0.1 * k, 1.2 * k);
+      JudgedScene things(0.1 * k, 1.2 * k);
       things.face({1.2 * k + 12.0, -0.9, 0.3}, {0.0, 1.8, 0.0}, 1.2, place, 0.05);
       EXPECT_EQ(followed.step(things), place == Place::kNew ? things.judged.points.size() : 0U) << "scan " << k;
     }
@@ -119,7 +122,7 @@ TEST(ObjectTracker, AFewNewEchoesAndAPlaceThatIsLeftAreEnough) {
   Followed followed;
   std::size_t moving = 0;
   for (int k = 0; k < 20; ++k) {
-    JudgedThings things(0.1 * k);
+    JudgedScene things(0.1 * k);
     const double x = -10.0 + 0.8 * k;
     things.face({x, 6.0, 0.3}, {12.0, 0.0, 0.0}, 1.2, Place::kUnobserved);
     things.face({-30.0, 20.0, 0.3}, {60.0, 0.0, 0.0}, 6.0, Place::kUnobserved, 0.15);  // a house behind
@@ -133,7 +136,7 @@ TEST(ObjectTracker, WhatStandsNeverMovesHoweverTheSensorPassesIt) {
   for (const Place place : {Place::kUnobserved, Place::kSettled}) {
     Followed followed;
     for (int k = 0; k < 40; ++k) {
-      JudgedThings things(0.1 * k, 1.0 * k);
+      JudgedScene things(0.1 * k, 1.0 * k);
       addVehicle(things, 20.0, 3.0, place);
       things.face({30.0, -6.0, 0.3}, {0.0, 2.0, 0.0}, 1.5, place);
       things.face({-20.0, 12.0, 0.0}, {100.0, 0.0, 0.0}, 6.0, place, 0.2);
@@ -149,7 +152,7 @@ TEST(ObjectTracker, WhatStopsStaysDynamicForTheStopTime) {
     config.stop_time = stop_time;
     Followed followed(config);
     for (int k = 0; k < 25; ++k) {
-      JudgedThings things(0.1 * k);
+      JudgedScene things(0.1 * k);
       addVehicle(things, 8.0, 2.0, k < 10 ? Place::kNew : Place::kUnobserved);
       const bool expected = 0.1 * (k - 9) <= stop_time;
       EXPECT_EQ(followed.step(things) > 0, expected) << "scan " << k << " stop_time " << stop_time;
@@ -162,7 +165,7 @@ TEST(ObjectTracker, WhatStopsStaysDynamicForTheStopTime) {
 TEST(ObjectTracker, AParkedCarThatDrivesOffIsFoundBeforeItIsFast) {
   Followed followed;
   for (int k = 0; k < 45; ++k) {
-    JudgedThings things(0.1 * k);
+    JudgedScene things(0.1 * k);
     const double driving = std::max(0.0, 0.1 * (k - 20)), way = 0.5 * 1.75 * driving * driving;
     addVehicle(things, 8.0 + way, 2.0, way < 0.2 ? Place::kSettled : Place::kUnobserved);
     const std::size_t car = things.judged.points.size();
@@ -176,7 +179,7 @@ TEST(ObjectTracker, AParkedCarThatDrivesOffIsFoundBeforeItIsFast) {
 TEST(ObjectTracker, WhatSettlesStandsAtOnce) {
   Followed followed;
   for (int k = 0; k < 14; ++k) {
-    JudgedThings things(0.1 * k);
+    JudgedScene things(0.1 * k);
     addVehicle(things, 8.0, 2.0, k < 10 ? Place::kNew : Place::kSettled);
     EXPECT_EQ(followed.step(things) > 0, k < 10) << "scan " << k;
   }
@@ -187,7 +190,7 @@ TEST(ObjectTracker, WhatASlowThingLeavesBehindAFenceTells) {
   Followed followed;
   std::size_t moving = 0, person = 0;
   for (int k = 0; k < 20; ++k) {
-    JudgedThings things(0.1 * k);
+    JudgedScene things(0.1 * k);
     const double y = -3.0 + 0.12 * k;
     things.face({9.0, y, 0.4}, {0.0, 0.5, 0.0}, 1.4, Place::kUnobserved, 0.05);
     person = things.judged.points.size();
@@ -203,7 +206,7 @@ TEST(ObjectTracker, WhatASlowThingLeavesBehindAFenceTells) {
 TEST(ObjectTracker, FragmentsOfAVehicleBehindAPoleMoveWithIt) {
   Followed followed;
   for (int k = 0; k < 15; ++k) {
-    JudgedThings things(0.1 * k);
+    JudgedScene things(0.1 * k);
     const double x = 12.0 + 0.6 * k;
     things.face({x, -0.9, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kUnobserved, 0.05);
     const bool is_hidden_in_part = k == 14;
@@ -214,13 +217,13 @@ TEST(ObjectTracker, FragmentsOfAVehicleBehindAPoleMoveWithIt) {
     const bool is_known = k > 8;
     EXPECT_TRUE(!is_known || moving == things.judged.points.size()) << "scan " << k << ": " << moving;
   }
-  EXPECT_EQ(followed.candidates.size(), 2U);
+  EXPECT_EQ(followed.segments.size(), 2U);
 }
 
 TEST(ObjectTracker, AThinThingNeverMoves) {
   Followed followed;
   for (int k = 0; k < 10; ++k) {
-    JudgedThings things(0.1 * k);
+    JudgedScene things(0.1 * k);
     things.face({8.0 + 0.5 * k, 2.0, 2.2}, {0.0, 1.5, 0.0}, 0.05, Place::kNew, 0.05);
     EXPECT_EQ(followed.step(things), 0U);
   }
@@ -229,7 +232,7 @@ TEST(ObjectTracker, AThinThingNeverMoves) {
 TEST(ObjectTracker, WhatIsLongerThanAnyVehicleIsNotFollowed) {
   for (const double length : {24.0, 26.0}) {
     Followed followed;
-    JudgedThings things(0.0);
+    JudgedScene things(0.0);
     things.face({-12.0, 6.0, 0.3}, {length, 0.0, 0.0}, 1.2, Place::kNew, 0.1);
     EXPECT_EQ(followed.step(things) > 0, length < 25.0);
     EXPECT_EQ(followed.tracker.objects().size(), length < 25.0 ? 1U : 0U);
@@ -239,17 +242,17 @@ TEST(ObjectTracker, WhatIsLongerThanAnyVehicleIsNotFollowed) {
 TEST(ObjectTracker, NumbersEndWithTheThingAndAreNotUsedAgain) {
   Followed followed;
   const auto seeAt = [&](double stamp) {
-    JudgedThings things(stamp);
+    JudgedScene things(stamp);
     addVehicle(things, 8.0, 2.0, Place::kNew);
     followed.step(things);
     return followed.tracker.objects().at(0).id;
   };
   const std::uint32_t first = seeAt(0.0);
-  followed.step(JudgedThings(0.25));
+  followed.step(JudgedScene(0.25));
   EXPECT_TRUE(followed.tracker.objects().empty());
   EXPECT_EQ(seeAt(0.5), first) << "hidden for a moment";
-  followed.step(JudgedThings(1.0));
-  followed.step(JudgedThings(1.25));
+  followed.step(JudgedScene(1.0));
+  followed.step(JudgedScene(1.25));
   const std::uint32_t second = seeAt(1.5);
   EXPECT_GT(second, first) << "forgotten in between";
   followed.tracker.reset();
@@ -260,7 +263,7 @@ TEST(ObjectTracker, MemoryIsBounded) {
   Followed followed;
   std::size_t after_a_while = 0;
   for (int k = 0; k < 400; ++k) {
-    JudgedThings things(0.1 * k);
+    JudgedScene things(0.1 * k);
     things.face({5.0 + 3.0 * (k % 9), 2.0, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kNew);
     followed.step(things);
     if (k == 100) after_a_while = followed.tracker.memoryBytes();

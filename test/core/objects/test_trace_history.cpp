@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/objects/trace_history.h"
-#include "support/judged_things.h"
+#include "support/judged_scene.h"
 
 namespace donex {
 namespace {
@@ -13,11 +13,11 @@ namespace {
 constexpr double kLookBack = 1.0, kLongestGap = 0.6;  // [s]
 
 /// A thing of one echo, at x.
-Candidate thing(const testing::JudgedThings& things, std::size_t echo) {
-  Candidate candidate;
-  candidate.echoes = {static_cast<std::uint32_t>(echo)};
-  describeEchoes(things.judged, candidate);
-  return candidate;
+Segment thing(const testing::JudgedScene& things, std::size_t echo) {
+  Segment segment;
+  segment.echoes = {static_cast<std::uint32_t>(echo)};
+  describeEchoes(things.judged, segment);
+  return segment;
 }
 
 /// All traces a thing ever left: stamp and place.
@@ -46,7 +46,7 @@ TEST(TraceHistory, FindsWhatListsFind) {
   for (int k = 0; k < 400; ++k) {
     stamp += k % 100 < 50 ? 0.1 : 0.02 + 0.7 * uniform(random);
     history.begin(stamp);
-    testing::JudgedThings things(stamp);
+    testing::JudgedScene things(stamp);
     for (int id = 0; id < 12; ++id) things.echo({uniform(random) * 50.0, 1.0 * id, 1.0}, Place::kNew);
     for (int id = 0; id < 12; ++id) {
       Followed& it = followed[id];
@@ -62,9 +62,9 @@ TEST(TraceHistory, FindsWhatListsFind) {
         EXPECT_NEAR(trace.begin()->x(), expected->second, 1e-4);
       }
       if (uniform(random) < 0.3) continue;  // hidden
-      const Candidate candidate = thing(things, static_cast<std::size_t>(id));
-      it.last = history.leave(things.judged, candidate, it.last);
-      it.left.emplace_back(stamp, candidate.center().x());
+      const Segment segment = thing(things, static_cast<std::size_t>(id));
+      it.last = history.leave(things.judged, segment, it.last);
+      it.left.emplace_back(stamp, segment.center().x());
       it.last_seen = stamp;
     }
     for (auto& [id, it] : followed) {
@@ -76,15 +76,15 @@ TEST(TraceHistory, FindsWhatListsFind) {
 
 TEST(TraceHistory, KeepsNoMoreThanItIsAskedFor) {
   TraceHistory history(kLookBack, kLongestGap);
-  testing::JudgedThings things(0.0);
+  testing::JudgedScene things(0.0);
   things.face({8.0, 0.0, 0.4}, {0.0, 2.0, 0.0}, 2.0, Place::kNew, 0.1);
-  Candidate candidate;
-  for (std::uint32_t i = 0; i < 400; ++i) candidate.echoes.push_back(i);
+  Segment segment;
+  for (std::uint32_t i = 0; i < 400; ++i) segment.echoes.push_back(i);
   TraceHistory::Id last;
   std::size_t after_warm_up = 0;
   for (int k = 0; k < 1000; ++k) {
     history.begin(0.1 * k);
-    last = history.leave(things.judged, candidate, last);
+    last = history.leave(things.judged, segment, last);
     if (k == 100) after_warm_up = history.memoryBytes();
   }
   EXPECT_EQ(history.memoryBytes(), after_warm_up);

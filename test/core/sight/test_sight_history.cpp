@@ -10,7 +10,7 @@
 namespace donex {
 namespace {
 
-using Evidence = SightHistory::Evidence;
+using Evidence = SightView::Evidence;
 constexpr int kAll = 1000;
 constexpr double kEver = -1e9;
 const SightImage::Reading kReading{true, 0.038};
@@ -36,34 +36,39 @@ void add(SightHistory& history, const Scan& scan) { history.add(scan, all(scan))
 
 int sum(const Evidence& evidence) { return evidence.free + evidence.surface + evidence.hidden; }
 
+SightView view(const SightHistory& history) { return history.seenFrom(Eigen::Isometry3d::Identity()); }
+
 /// Scans that know this place, near the sensor.
 int kept(const SightHistory& history, double since = kEver) {
-  return sum(history.ask(Eigen::Vector3f(5.0F, 0.0F, 0.0F), since, kAll));
+  return sum(view(history).ask(Eigen::Vector3f(5.0F, 0.0F, 0.0F), since, kAll));
 }
 
 TEST(SightHistory, ForgetsWhatIsOlderThanItsLength) {
   SightHistory history(1.0, 0.0, 0.5F, kReading);
   for (int k = 0; k <= 20; ++k) {
     add(history, shell(0.125 * k, 20.0));
-    history.askFrom(Eigen::Isometry3d::Identity());
     EXPECT_EQ(kept(history), std::min(k + 1, 9)) << "scan " << k;
   }
   add(history, shell(100.0, 20.0));
-  history.askFrom(Eigen::Isometry3d::Identity());
   EXPECT_EQ(kept(history), 1) << "after a pause";
+}
+
+TEST(SightHistory, KeepsNoMoreThanAViewHolds) {
+  SightHistory history(10.0, 0.0, 0.5F, kReading);
+  for (int k = 0; k <= 200; ++k) add(history, shell(0.01 * k, 20.0));
+  EXPECT_EQ(kept(history), 128);
+  EXPECT_EQ(kept(history, 1.995), 1) << "the newest is among them";
 }
 
 TEST(SightHistory, KeepsNoMoreThanOneScanASpacing) {
   SightHistory history(10.0, 0.25, 0.5F, kReading);
   for (int k = 0; k <= 16; ++k) add(history, shell(0.0625 * k, 20.0));  // four times as often
-  history.askFrom(Eigen::Isometry3d::Identity());
   EXPECT_EQ(kept(history), 5);
 }
 
 TEST(SightHistory, AsksOnlyScansLaterThanSince) {
   SightHistory history(10.0, 0.0, 0.5F, kReading);
   for (int k = 1; k <= 8; ++k) add(history, shell(k, 20.0));
-  history.askFrom(Eigen::Isometry3d::Identity());
   EXPECT_EQ(kept(history, 0.0), 8);
   EXPECT_EQ(kept(history, 3.5), 5);
   EXPECT_EQ(kept(history, 4.0), 4) << "a scan at `since` is not later";
@@ -74,12 +79,11 @@ TEST(SightHistory, CountsFreeSurfaceAndHiddenApart) {
   SightHistory history(10.0, 0.0, 0.5F, kReading);
   double stamp = 0.0;
   for (const double range : {20.0, 10.0, 20.0, 5.0, 30.0, 10.2, 5.0}) add(history, shell(stamp += 1.0, range));
-  history.askFrom(Eigen::Isometry3d::Identity());
-  const Evidence evidence = history.ask(Eigen::Vector3f(10.0F, 0.0F, 0.0F), kEver, kAll);
+  const Evidence evidence = view(history).ask(Eigen::Vector3f(10.0F, 0.0F, 0.0F), kEver, kAll);
   EXPECT_EQ(evidence.free, 3);
   EXPECT_EQ(evidence.surface, 2);
   EXPECT_EQ(evidence.hidden, 2);
-  EXPECT_EQ(sum(history.ask(Eigen::Vector3f(1.0F, 0.0F, 9.0F), kEver, kAll)), 0) << "above every beam";
+  EXPECT_EQ(sum(view(history).ask(Eigen::Vector3f(1.0F, 0.0F, 9.0F), kEver, kAll)), 0) << "above every beam";
 }
 
 TEST(SightHistory, StopsOnceEnoughSawItFreeNewestFirst) {
@@ -87,8 +91,7 @@ TEST(SightHistory, StopsOnceEnoughSawItFreeNewestFirst) {
   add(history, shell(1.0, 10.0));
   for (int k = 2; k <= 6; ++k) add(history, shell(k, 20.0));
   add(history, shell(7.0, 5.0));
-  history.askFrom(Eigen::Isometry3d::Identity());
-  const Evidence evidence = history.ask(Eigen::Vector3f(10.0F, 0.0F, 0.0F), kEver, 3);
+  const Evidence evidence = view(history).ask(Eigen::Vector3f(10.0F, 0.0F, 0.0F), kEver, 3);
   EXPECT_EQ(evidence.free, 3);
   EXPECT_EQ(evidence.hidden, 1) << "the newest scan was asked";
   EXPECT_EQ(evidence.surface, 0) << "the oldest was not";
@@ -97,18 +100,16 @@ TEST(SightHistory, StopsOnceEnoughSawItFreeNewestFirst) {
 TEST(SightHistory, TheNewestScanAlone) {
   SightHistory history(10.0, 0.0, 0.5F, kReading);
   const Eigen::Vector3f place(10.0F, 0.0F, 0.0F);
-  EXPECT_EQ(history.askNewest(place), SightImage::Sight::kUnknown);
+  EXPECT_EQ(history.newestSeenFrom(Eigen::Isometry3d::Identity()).at(place), SightImage::Sight::kUnknown);
   add(history, shell(1.0, 20.0));
   add(history, shell(2.0, 5.0));
-  history.askFrom(Eigen::Isometry3d::Identity());
-  EXPECT_EQ(history.askNewest(place), SightImage::Sight::kHidden);
+  EXPECT_EQ(history.newestSeenFrom(Eigen::Isometry3d::Identity()).at(place), SightImage::Sight::kHidden);
 }
 
 TEST(SightHistory, EchoesThatAreNoneAreLeftOut) {
   SightHistory history(10.0, 0.0, 0.5F, kReading);
   const Scan scan = shell(1.0, 20.0);
   history.add(scan, std::vector<std::uint8_t>(scan.echoes.size(), 0));
-  history.askFrom(Eigen::Isometry3d::Identity());
   EXPECT_EQ(kept(history), 0);
 }
 
@@ -128,7 +129,7 @@ TEST(SightHistory, AskedInAnyFrameWhileTheSensorMoves) {
     add(history, scans.back());
   }
   const Eigen::Isometry3d odom_from_asked = drawPose(50.0);
-  history.askFrom(odom_from_asked);
+  const SightView asked = history.seenFrom(odom_from_asked);
   int free = 0, surface = 0, hidden = 0;
   for (int i = 0; i < 2000; ++i) {
     const Eigen::Vector3d in_odom(30.0 * uniform(random), 30.0 * uniform(random), 2.0 * uniform(random));
@@ -145,7 +146,7 @@ TEST(SightHistory, AskedInAnyFrameWhileTheSensorMoves) {
       expected.hidden += beyond < -0.5 ? 1 : 0;
     }
     if (on_border) continue;
-    const Evidence evidence = history.ask((odom_from_asked.inverse() * in_odom).cast<float>(), kEver, kAll);
+    const Evidence evidence = asked.ask((odom_from_asked.inverse() * in_odom).cast<float>(), kEver, kAll);
     ASSERT_EQ(evidence.free, expected.free) << in_odom.transpose();
     ASSERT_EQ(evidence.surface, expected.surface) << in_odom.transpose();
     ASSERT_EQ(evidence.hidden, expected.hidden) << in_odom.transpose();
@@ -162,7 +163,6 @@ TEST(SightHistory, ResetForgetsEverything) {
   EXPECT_TRUE(history.empty());
   EXPECT_EQ(kept(history), 0);
   add(history, shell(1.0, 20.0));  // an earlier stamp than before the reset
-  history.askFrom(Eigen::Isometry3d::Identity());
   EXPECT_EQ(kept(history), 1);
 }
 

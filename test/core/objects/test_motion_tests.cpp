@@ -3,13 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include "core/objects/motion_evidence.h"
-#include "support/judged_things.h"
+#include "core/objects/motion_tests.h"
+#include "support/judged_scene.h"
 
 namespace donex {
 namespace {
 
-using testing::JudgedThings;
+using testing::JudgedScene;
 
 /// The trace of a thing.
 struct Left {
@@ -23,32 +23,33 @@ struct Left {
   }
 };
 
-/// A scan, its sight and its first thing as a candidate.
+/// A scan, its sight and its first thing as a segment.
 struct Seen {
-  explicit Seen(const JudgedThings& seen, std::size_t echoes) : things(seen) {
+  explicit Seen(const JudgedScene& seen, std::size_t echoes) : things(seen) {
     history.add(things.scan(), things.judged.is_echo);
-    history.askFrom(things.judged.odom_from_points);
-    for (std::size_t i = 0; i < echoes; ++i) candidate.echoes.push_back(static_cast<std::uint32_t>(i));
-    describeEchoes(things.judged, candidate);
+    for (std::size_t i = 0; i < echoes; ++i) segment.echoes.push_back(static_cast<std::uint32_t>(i));
+    describeEchoes(things.judged, segment);
   }
 
   Left leave() const {
     Left left;
     left.history.begin(things.judged.stamp);
-    left.last = left.history.leave(things.judged, candidate, {});
+    left.last = left.history.leave(things.judged, segment, {});
     return left;
   }
-  Former lookBack(const Trace& trace) const { return MotionEvidence(things.judged, history).lookBack(trace); }
-  bool hasMoved(const Trace& trace) const { return MotionEvidence(things.judged, history).hasMoved(trace, candidate); }
+  FormerPlace lookBack(const Trace& trace) const { return MotionTests(things.judged, now()).lookBack(trace); }
+  bool hasMoved(const Trace& trace) const { return MotionTests(things.judged, now()).hasMoved(trace, segment); }
 
-  JudgedThings things;
+  ScanSight now() const { return history.newestSeenFrom(things.judged.odom_from_points); }
+
+  JudgedScene things;
   SightHistory history{2.0, 0.0, 0.5F, {true, 0.038}};
-  Candidate candidate;
+  Segment segment;
 };
 
 /// Somebody 8 m ahead at y before a wall; the sensor moves along x.
 Seen somebody(double y, Place place = Place::kUnobserved, double sensor_x = 0.0, bool hidden = false) {
-  JudgedThings things(0.0, sensor_x);
+  JudgedScene things(0.0, sensor_x);
   things.face({8.0, y, 0.4}, {0.0, 0.5, 0.0}, 1.4, place, 0.05);
   const std::size_t echoes = things.judged.points.size();
   if (hidden) things.face({5.0, -3.0, 0.0}, {0.0, 2.5, 0.0}, 1.8, Place::kSettled, 0.02);
@@ -56,7 +57,7 @@ Seen somebody(double y, Place place = Place::kUnobserved, double sensor_x = 0.0,
   return Seen(things, echoes);
 }
 
-TEST(MotionEvidence, ATraceIsSpreadOverTheThing) {
+TEST(MotionTests, ATraceIsSpreadOverTheThing) {
   const Left left = somebody(-1.0).leave();
   const Trace trace = left;
   EXPECT_LE(trace.size(), 48U);
@@ -65,7 +66,7 @@ TEST(MotionEvidence, ATraceIsSpreadOverTheThing) {
   for (const Eigen::Vector3d& point : trace) EXPECT_NEAR(point.x(), 8.0, 1e-4);
 }
 
-TEST(MotionEvidence, WhatStandsIsStillThere) {
+TEST(MotionTests, WhatStandsIsStillThere) {
   const Left trace = somebody(-1.0).leave();
   const Seen now = somebody(-1.0, Place::kUnobserved, 0.5);
   EXPECT_EQ(now.lookBack(trace).left, 0);
@@ -73,30 +74,30 @@ TEST(MotionEvidence, WhatStandsIsStillThere) {
   EXPECT_FALSE(now.hasMoved(trace));
 }
 
-TEST(MotionEvidence, APlaceIsLeftWhenTheWallBehindItIsSeen) {
+TEST(MotionTests, APlaceIsLeftWhenTheWallBehindItIsSeen) {
   const Left trace = somebody(-2.0).leave();
-  const Former former = somebody(1.0).lookBack(trace);
+  const FormerPlace former = somebody(1.0).lookBack(trace);
   EXPECT_GT(former.left, 20) << "all of it before the wall";
   EXPECT_EQ(former.still, 0);
 }
 
-TEST(MotionEvidence, NothingIsKnownOfAPlaceThatIsHiddenNow) {
+TEST(MotionTests, NothingIsKnownOfAPlaceThatIsHiddenNow) {
   const Left trace = somebody(-2.0).leave();
   const Seen now = somebody(1.0, Place::kUnobserved, 0.0, true);
   EXPECT_EQ(now.lookBack(trace).left, 0);
   EXPECT_FALSE(now.hasMoved(trace));
 }
 
-TEST(MotionEvidence, AShapeFoundElsewhereHasMoved) {
+TEST(MotionTests, AShapeFoundElsewhereHasMoved) {
   const Left trace = somebody(-2.0).leave();
   EXPECT_TRUE(somebody(-1.2).hasMoved(trace));
   EXPECT_FALSE(somebody(-1.85).hasMoved(trace)) << "not far enough to tell";
   EXPECT_FALSE(somebody(-1.2, Place::kSettled).hasMoved(trace)) << "what is settled stood there";
 }
 
-TEST(MotionEvidence, AnotherShapeIsAnotherThing) {
+TEST(MotionTests, AnotherShapeIsAnotherThing) {
   const Left trace = somebody(-2.0).leave();
-  JudgedThings things(0.0);
+  JudgedScene things(0.0);
   things.face({8.0, -0.5, 0.4}, {0.0, 0.1, 0.0}, 0.4, Place::kUnobserved, 0.05);
   const std::size_t echoes = things.judged.points.size();
   things.face({20.0, -15.0, 0.0}, {0.0, 30.0, 0.0}, 5.0, Place::kSettled, 0.1);

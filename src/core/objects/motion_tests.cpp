@@ -1,4 +1,4 @@
-#include "core/objects/motion_evidence.h"
+#include "core/objects/motion_tests.h"
 
 #include <array>
 #include <limits>
@@ -20,7 +20,7 @@ struct Step {
 };
 constexpr Step kStep = {0.4, 0.25F}, kStepOfMany = {0.3, 0.2F};
 
-/// Some echoes of a candidate.
+/// Some echoes of a segment.
 struct Points {
   std::array<Eigen::Vector3d, kPresentPoints> in_odom;
   std::size_t count = 0;
@@ -39,44 +39,44 @@ Eigen::Vector3d offsetToNearest(const Eigen::Vector3d& point, const Points& othe
 
 }  // namespace
 
-MotionEvidence::MotionEvidence(const JudgedScan& scan, const SightHistory& history)
-    : scan_(scan), history_(history), points_from_odom_(scan.odom_from_points.inverse()) {}
+MotionTests::MotionTests(const JudgedScan& scan, const ScanSight& now)
+    : scan_(scan), now_(now), points_from_odom_(scan.odom_from_points.inverse()) {}
 
-Former MotionEvidence::lookBack(const Trace& trace) const {
-  Former former;
+FormerPlace MotionTests::lookBack(const Trace& trace) const {
+  FormerPlace former;
   for (const Eigen::Vector3d& point : trace) {
-    const SightImage::Sight sight = history_.askNewest((points_from_odom_ * point).cast<float>());
+    const SightImage::Sight sight = now_.at((points_from_odom_ * point).cast<float>());
     former.left += sight == SightImage::Sight::kFree ? 1 : 0;
     former.still += sight == SightImage::Sight::kSurface ? 1 : 0;
   }
   return former;
 }
 
-bool MotionEvidence::hasMoved(const Trace& trace, const Candidate& candidate) const {
-  const Step& step = candidate.echoes.size() >= kManyEchoes ? kStepOfMany : kStep;
-  const double shift = (candidate.center() - trace.center).head<2>().norm();
-  const bool worth_asking = !isMostlySettled(candidate) && trace.size() >= kLeastPoints && shift >= step.shift;
-  return worth_asking && hasLeft(trace, step.margin) && fitsElsewhere(trace, candidate, step.shift);
+bool MotionTests::hasMoved(const Trace& trace, const Segment& segment) const {
+  const Step& step = segment.echoes.size() >= kManyEchoes ? kStepOfMany : kStep;
+  const double shift = (segment.center() - trace.center).head<2>().norm();
+  const bool worth_asking = !isMostlySettled(segment) && trace.size() >= kLeastPoints && shift >= step.shift;
+  return worth_asking && hasLeft(trace, step.margin) && fitsElsewhere(trace, segment, step.shift);
 }
 
-bool MotionEvidence::hasLeft(const Trace& trace, float margin) const {
+bool MotionTests::hasLeft(const Trace& trace, float margin) const {
   int left = 0, still = 0, near_surface = 0;
   for (const Eigen::Vector3d& in_odom : trace) {
     const Eigen::Vector3f point = (points_from_odom_ * in_odom).cast<float>();
-    const SightImage::Sight through = history_.askThroughGaps(point, margin);
+    const SightImage::Sight through = now_.throughGaps(point, margin);
     left += through == SightImage::Sight::kFree ? 1 : 0;
     still += through == SightImage::Sight::kSurface ? 1 : 0;
-    near_surface += history_.askNewest(point, margin) == SightImage::Sight::kSurface ? 1 : 0;
+    near_surface += now_.at(point, margin) == SightImage::Sight::kSurface ? 1 : 0;
   }
   return left >= kLeastLeft && left > still && near_surface <= kStillShare * static_cast<double>(trace.size());
 }
 
-bool MotionEvidence::fitsElsewhere(const Trace& trace, const Candidate& candidate, double least_shift) const {
+bool MotionTests::fitsElsewhere(const Trace& trace, const Segment& segment, double least_shift) const {
   Points present;
-  visitSome(scan_, candidate, kPresentPoints,
+  visitSome(scan_, segment, kPresentPoints,
             [&](const Eigen::Vector3d& point) { present.in_odom[present.count++] = point; });
   // From centre to centre, which another view of the same thing displaces, to the best fit.
-  Eigen::Vector3d shift = candidate.center() - trace.center;
+  Eigen::Vector3d shift = segment.center() - trace.center;
   int fitting = 0;
   for (int round = 1; round <= kFitRounds; ++round) {
     const double reach = round < kFitRounds ? 2.0 * kFit : kFit;

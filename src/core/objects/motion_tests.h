@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-#include "core/objects/candidate.h"
+#include "core/objects/segment.h"
 #include "core/objects/trace_history.h"
 #include "core/sight/sight_history.h"
 
@@ -12,30 +12,30 @@ namespace donex {
 constexpr int kLeastLeft = 3;  ///< points of a trace that must be free now before its place counts as left
 
 /// The line of sight's own history: what stood there has left, or stands there still, or is not known.
-struct Former {
+struct FormerPlace {
   int left = 0;   ///< points of the trace that are free now
   int still = 0;  ///< points where a surface is still
 };
 
 /// The present scan, asked for former places.
-class MotionEvidence {
+class MotionTests {
  public:
-  /// `history` has the present scan as its newest and is asked in its points; both outlive this.
-  MotionEvidence(const JudgedScan& scan, const SightHistory& history);
+  /// `now`: what the present scan sees, asked in its points. The scan outlives this.
+  MotionTests(const JudgedScan& scan, const ScanSight& now);
 
   /// Read carefully: of a trace whose place is hidden now nothing is known.
-  Former lookBack(const Trace& trace) const;
+  FormerPlace lookBack(const Trace& trace) const;
 
-  /// True where the candidate fits the shape of the trace at another place, and is gone from the old one.
+  /// True where the segment fits the shape of the trace at another place, and is gone from the old one.
   /// Slower things than lookBack() sees, and things behind fences, where careful sight knows nothing.
-  bool hasMoved(const Trace& trace, const Candidate& candidate) const;
+  bool hasMoved(const Trace& trace, const Segment& segment) const;
 
  private:
   bool hasLeft(const Trace& trace, float margin) const;
-  bool fitsElsewhere(const Trace& trace, const Candidate& candidate, double least_shift) const;
+  bool fitsElsewhere(const Trace& trace, const Segment& segment, double least_shift) const;
 
   const JudgedScan& scan_;
-  const SightHistory& history_;
+  ScanSight now_;
   Eigen::Isometry3d points_from_odom_;
 };
 

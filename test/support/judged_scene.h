@@ -10,16 +10,16 @@
 namespace donex::testing {
 
 /// Points frame is the odometry frame, z is the height above ground.
-class JudgedThings {
+class JudgedScene {
  public:
-  explicit JudgedThings(double stamp, double sensor_x = 0.0) {
+  explicit JudgedScene(double stamp, double sensor_x = 0.0) {
     judged.stamp = stamp;
     judged.sensor = Eigen::Vector3d(sensor_x, 0.0, 1.8).cast<float>();
   }
 
   /// A face of a box, seen as a grid of echoes `step` [m] apart: spans `along` and `height` from `corner`.
-  JudgedThings& face(const Eigen::Vector3d& corner, const Eigen::Vector3d& along, double height, Place place,
-                     double step = 0.1) {
+  JudgedScene& face(const Eigen::Vector3d& corner, const Eigen::Vector3d& along, double height, Place place,
+                    double step = 0.1) {
     const int columns = static_cast<int>(along.norm() / step + 0.5), rows = static_cast<int>(height / step + 0.5);
     for (int c = 0; c <= columns; ++c) {
       for (int r = 0; r <= rows; ++r) {
@@ -29,11 +29,11 @@ class JudgedThings {
     return *this;
   }
 
-  JudgedThings& echo(const Eigen::Vector3d& point, Place place) {
+  JudgedScene& echo(const Eigen::Vector3d& point, Place place) {
     judged.points.push_back(point.cast<float>());
     judged.is_echo.push_back(1);
     judged.heights.push_back(static_cast<float>(point.z()));
-    judged.standing.push_back(Standing::kIn);
+    judged.roles.push_back(ClusterRole::kConnects);
     judged.places.push_back(place);
     return *this;
   }

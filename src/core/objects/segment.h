@@ -1,0 +1,114 @@
+// Connected echoes of one scan that may be an object, and what is decided about them.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <memory_resource>
+#include <vector>
+
+#include "core/evidence/judged_scan.h"
+#include "core/objects/scan_memory.h"
+#include "donex/config.h"
+#include "donex/proof.h"
+
+namespace donex {
+
+/// Farther from its predicted place [m] an object that is followed is not looked for.
+constexpr double kFollowed = 1.5;
+
+/// Connected echoes of the present scan, and what their places say. Only the segmenter writes it.
+struct Segment {
+  explicit Segment(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) : echoes(memory) {}
+
+  std::pmr::vector<std::uint32_t> echoes;  ///< indices into the scan
+  int new_echoes = 0;
+  int settled_echoes = 0;
+  Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();  ///< odometry frame [m]
+  bool cut_out = false;  ///< cut from a larger cluster where a moving object was predicted
+
+  Eigen::Vector3d center() const { return 0.5 * (low + high); }
+  Eigen::Vector3d extent() const { return high - low; }
+};
+
+/// The segments of one scan.
+class Segments {
+ public:
+  /// Makes one more, with room for so many echoes. Valid until the next call.
+  Segment& add(std::size_t echoes) {
+    Segment& segment = segments_.emplace_back(memory_.resource());
+    segment.echoes.reserve(echoes);
+    return segment;
+  }
+  /// Keeps the order of the others.
+  template <class Condition>
+  bool removeIf(Condition&& condition) {
+    const auto end = std::remove_if(segments_.begin(), segments_.end(), condition);
+    const bool any = end != segments_.end();
+    segments_.erase(end, segments_.end());
+    return any;
+  }
+  void clear() {
+    segments_.clear();
+    memory_.release();
+  }
+
+  std::size_t size() const { return segments_.size(); }
+  Segment& operator[](std::size_t i) { return segments_[i]; }
+  const Segment& operator[](std::size_t i) const { return segments_[i]; }
+  auto begin() { return segments_.begin(); }
+  auto begin() const { return segments_.begin(); }
+  auto end() { return segments_.end(); }
+  auto end() const { return segments_.end(); }
+
+  std::size_t memoryBytes() const { return memory_.bytes() + segments_.capacity() * sizeof(Segment); }
+
+ private:
+  ScanMemory memory_;  ///< outlives the segments
+  std::vector<Segment> segments_;
+};
+
+/// What is decided about a segment.
+struct Verdict {
+  Proof proof = Proof::kNone;
+  bool moves_whole = false;  ///< the proof is about the whole segment, not about its new echoes alone
+
+  bool moves() const { return proof != Proof::kNone; }
+};
+
+/// One per segment.
+using Verdicts = std::vector<Verdict>;
+
+/// Where a moving object that is followed should be now, odometry frame [m].
+struct Prediction {
+  Eigen::Vector3d center, extent;
+  Eigen::Vector3d full_extent;  ///< as seen when less of it was hidden
+  bool moves_whole = false;     ///< it was seen to move as a whole not long ago
+
+  /// Longer than what it moves in the birth window: its own side settles under it.
+  bool isLong() const { return isLong(extent); }
+  static bool isLong(const Eigen::Vector3d& extent);
+  bool looksLike(const Segment& segment) const;
+  /// The object is somewhere in the segment, which is more than that.
+  bool isWithin(const Segment& segment) const;
+};
+using Predictions = std::vector<Prediction>;
+
+/// Fills in everything that follows from the segment's echoes.
+void describeEchoes(const JudgedScan& scan, Segment& segment);
+
+/// Extents [m] that may be those of one object, seen from two places.
+bool alike(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+
+/// Longer than any vehicle: a wall, a hedge, or objects that touch.
+bool isTooLong(const Segment& segment);
+
+/// More of it is settled than not.
+bool isMostlySettled(const Segment& segment);
+
+/// Enough of the segment is new, by number and against what is settled.
+bool isNew(const Segment& segment, const ObjectConfig& config);
+
+/// Near, and yet hardly higher than a beam: an edge, a wire, a branch. `sensor` in the odometry frame.
+bool isThin(const Segment& segment, const Eigen::Vector3d& sensor);
+
+}  // namespace donex

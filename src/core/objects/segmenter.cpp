@@ -1,0 +1,103 @@
+#include "core/objects/segmenter.h"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+
+namespace donex {
+namespace {
+
+constexpr double kCutRim = 0.3, kTightCutRim = 0.1;  // [m] around a predicted object
+constexpr std::size_t kWorthCutting = 10;            // echoes
+constexpr std::size_t kTooSmall = std::numeric_limits<std::size_t>::max();
+
+}  // namespace
+
+Segmenter::Segmenter(double reach, const ObjectConfig& config)
+    : config_(config), clusters_(reach, clustersOf(config)) {}
+
+void Segmenter::segment(const JudgedScan& scan, const Predictions& predictions, Segments& segments) {
+  segments.clear();
+  clusters_.connect(scan.sensor, scan.points, scan.heights, scan.roles);
+  append(scan, segments);
+  const std::size_t clusters = segments.size();
+  for (std::size_t i = 0; i < clusters; ++i) {
+    for (const Prediction& object : predictions) cutOut(scan, object, i, segments);
+  }
+
+  roles_.assign(scan.points.size(), ClusterRole::kNone);
+  const auto is_mixed = [&](const Segment& segment) { return isMixed(segment, predictions); };
+  for (const Segment& segment : segments) {
+    if (!is_mixed(segment)) continue;
+    for (const std::uint32_t echo : segment.echoes) {
+      const bool may_move = scan.places[echo] != Place::kSettled && scan.roles[echo] == ClusterRole::kConnects;
+      if (may_move) roles_[echo] = ClusterRole::kConnects;
+    }
+  }
+  if (!segments.removeIf(is_mixed)) return;
+  clusters_.connect(scan.sensor, scan.points, scan.heights, roles_);
+  append(scan, segments);
+}
+
+void Segmenter::append(const JudgedScan& scan, Segments& segments) {
+  const std::size_t first = segments.size();
+  segment_of_.assign(static_cast<std::size_t>(clusters_.count()), kTooSmall);
+  for (int cluster = 0; cluster < clusters_.count(); ++cluster) {
+    if (clusters_.echoesIn(cluster) < static_cast<std::size_t>(config_.min_echoes)) continue;
+    segment_of_[static_cast<std::size_t>(cluster)] = segments.size();
+    segments.add(clusters_.echoesIn(cluster));
+  }
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    if (clusters_.of(i) == Clusters::kNone) continue;
+    const std::size_t segment = segment_of_[static_cast<std::size_t>(clusters_.of(i))];
+    if (segment != kTooSmall) segments[segment].echoes.push_back(static_cast<std::uint32_t>(i));
+  }
+  for (std::size_t i = first; i < segments.size(); ++i) describeEchoes(scan, segments[i]);
+}
+
+void Segmenter::cutOut(const JudgedScan& scan, const Prediction& object, std::size_t whole, Segments& segments) {
+  const bool fits_in = ((object.extent - segments[whole].extent()).array() <= kCutRim).all();
+  const bool worth_it = object.moves_whole && object.isLong() && object.isWithin(segments[whole]) && fits_in;
+  if (!worth_it) return;
+  const auto is_part = [&](std::uint32_t echo) {
+    const Eigen::Vector3d offset = scan.odom_from_points * scan.points[echo].cast<double>() - object.center;
+    const bool inside = (offset.array().abs() <= (0.5 * object.extent).array() + kTightCutRim).all();
+    return inside && scan.places[echo] != Place::kSettled;
+  };
+  const auto all = segments[whole].echoes.size();
+  const auto of_part =
+      static_cast<std::size_t>(std::count_if(segments[whole].echoes.begin(), segments[whole].echoes.end(), is_part));
+  if (of_part < kWorthCutting || all - of_part < kWorthCutting) return;
+  Segment& part = segments.add(of_part);
+  Segment& rest = segments[whole];
+  std::copy_if(rest.echoes.begin(), rest.echoes.end(), std::back_inserter(part.echoes), is_part);
+  rest.echoes.erase(std::remove_if(rest.echoes.begin(), rest.echoes.end(), is_part), rest.echoes.end());
+  part.cut_out = true;
+  rest.cut_out = false;
+  describeEchoes(scan, part);
+  describeEchoes(scan, rest);
+}
+
+bool Segmenter::isMixed(const Segment& segment, const Predictions& predictions) const {
+  if (isNew(segment, config_)) return false;
+  const auto is_it = [&](const Prediction& object) { return object.isLong() && object.looksLike(segment); };
+  const bool is_known = !isMostlySettled(segment) && std::any_of(predictions.begin(), predictions.end(), is_it);
+  if (is_known) return false;
+  const std::size_t unsettled = segment.echoes.size() - static_cast<std::size_t>(segment.settled_echoes);
+  const bool has_parts =
+      unsettled >= kWorthCutting && 4 * static_cast<std::size_t>(segment.settled_echoes) >= unsettled;
+  const auto is_within = [&](const Prediction& object) { return object.isWithin(segment); };
+  const bool hides_an_object = has_parts && std::any_of(predictions.begin(), predictions.end(), is_within);
+  return hides_an_object || segment.new_echoes >= config_.min_echoes;
+}
+
+double Segmenter::bytesFor(double reach, const ObjectConfig& config, double echoes) {
+  return Clusters::bytesFor(reach, clustersOf(config), echoes, 0.5 * echoes) + echoes * sizeof(ClusterRole);
+}
+
+std::size_t Segmenter::memoryBytes() const {
+  return clusters_.memoryBytes() + roles_.capacity() * sizeof(ClusterRole) +
+         segment_of_.capacity() * sizeof(std::size_t);
+}
+
+}  // namespace donex

@@ -1,0 +1,221 @@
+// Which connected echoes are one thing, and which of them only stand close to it.
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "core/objects/segmenter.h"
+#include "core/objects/trimmer.h"
+#include "support/judged_scene.h"
+
+namespace donex {
+namespace {
+
+using testing::JudgedScene;
+
+constexpr double kReach = 40.0;
+
+Segments found(const JudgedScene& things, const Predictions& predictions = {}) {
+  Segmenter segmenter(kReach, ObjectConfig{});
+  Segments segments;
+  segmenter.segment(things.judged, predictions, segments);
+  return segments;
+}
+
+TEST(Segmenter, TellsOfEachThingWhatItsEchoesSay) {
+  JudgedScene things(0.0);
+  things.face({6.0, 1.0, 0.5}, {0.0, 1.0, 0.0}, 1.0, Place::kNew);          // 11 x 11
+  things.face({6.0, -4.0, 0.5}, {0.0, 0.5, 0.0}, 1.0, Place::kSettled);     // 6 x 11
+  things.face({-6.0, 0.0, 0.5}, {0.0, 0.2, 0.0}, 0.2, Place::kUnobserved);  // 3 x 3
+  things.judged.odom_from_points.translation() << 100.0, 0.0, 0.0;
+  const Segments segments = found(things);
+  ASSERT_EQ(segments.size(), 3U);
+  EXPECT_EQ(segments[0].echoes.size(), 121U);
+  EXPECT_EQ(segments[0].new_echoes, 121);
+  EXPECT_EQ(segments[0].settled_echoes, 0);
+  EXPECT_TRUE(segments[0].center().isApprox(Eigen::Vector3d(106.0, 1.5, 1.0), 1e-4)) << segments[0].center();
+  EXPECT_NEAR(segments[0].extent().y(), 1.0, 1e-4);
+  EXPECT_EQ(segments[1].settled_echoes, 66);
+  EXPECT_EQ(segments[1].new_echoes, 0);
+  EXPECT_EQ(segments[2].echoes.size(), 9U);
+  EXPECT_EQ(segments[2].new_echoes + segments[2].settled_echoes, 0);
+}
+
+TEST(Segmenter, TooFewEchoesAreNoThing) {
+  for (const int echoes : {4, 5}) {
+    JudgedScene things(0.0);
+    for (int i = 0; i < echoes; ++i) things.echo({6.0, 0.1 * i, 1.0}, Place::kNew);
+    EXPECT_EQ(found(things).size(), echoes < ObjectConfig{}.min_echoes ? 0U : 1U);
+  }
+}
+
+TEST(Segmenter, IsNewWhereEnoughIsNew) {
+  const ObjectConfig config;  // at least 5, more than 0.4 of new and settled, more than 0.15 of all
+  const auto isNewOf = [&](int fresh, int settled, std::size_t all, double length = 4.0) {
+    Segment segment;
+    segment.new_echoes = fresh;
+    segment.settled_echoes = settled;
+    segment.echoes.resize(all);
+    segment.high = Eigen::Vector3d(length, 1.0, 1.0);
+    return isNew(segment, config);
+  };
+  EXPECT_TRUE(isNewOf(5, 0, 10));
+  EXPECT_FALSE(isNewOf(4, 0, 4));
+  EXPECT_TRUE(isNewOf(41, 59, 100));
+  EXPECT_FALSE(isNewOf(39, 61, 100));
+  EXPECT_TRUE(isNewOf(16, 0, 100));
+  EXPECT_FALSE(isNewOf(14, 0, 100));
+  EXPECT_TRUE(isNewOf(50, 0, 100, 24.0));
+  EXPECT_FALSE(isNewOf(50, 0, 100, 26.0)) << "longer than any vehicle";
+}
+
+TEST(Segmenter, APedestrianAtAWallIsOnlyHimself) {
+  JudgedScene things(0.0);
+  things.face({10.0, -8.0, 0.3}, {0.0, 16.0, 0.0}, 2.0, Place::kSettled);
+  const std::size_t wall = things.judged.points.size();
+  things.face({9.8, 1.0, 0.3}, {0.0, 0.4, 0.0}, 1.5, Place::kNew);
+  const std::size_t pedestrian = things.judged.points.size() - wall;
+  const Segments segments = found(things);
+  ASSERT_EQ(segments.size(), 1U);
+  EXPECT_EQ(segments[0].echoes.size(), pedestrian);
+  EXPECT_EQ(segments[0].echoes.front(), wall);
+  EXPECT_TRUE(isNew(segments[0], ObjectConfig{}));
+}
+
+TEST(Segmenter, TwoPedestriansAtAWallAreTwoWithWhatIsUnobservedOfThem) {
+  JudgedScene things(0.0);
+  things.face({10.0, -8.0, 0.3}, {0.0, 16.0, 0.0}, 2.0, Place::kSettled);
+  for (const double y : {-4.0, 3.0}) {
+    things.face({9.8, y, 0.3}, {0.0, 0.4, 0.0}, 1.0, Place::kNew);
+    things.face({9.8, y, 1.4}, {0.0, 0.4, 0.0}, 0.3, Place::kUnobserved);
+  }
+  const Segments segments = found(things);
+  ASSERT_EQ(segments.size(), 2U);
+  for (const Segment& segment : segments) {
+    EXPECT_EQ(segment.echoes.size(), 55U + 20U);
+    EXPECT_EQ(segment.new_echoes, 55);
+  }
+}
+
+/// A mover whose nearest neighbour stands 0.4 m away: one cluster, two parts for a finer eye.
+class Trimming : public ::testing::Test {
+ protected:
+  void build(double mover_height, Place neighbour, double neighbour_height) {
+    things_.face({5.11, 0.1, 0.3}, {0.0, 1.0, 0.0}, mover_height, Place::kNew);
+    mover_ = things_.judged.points.size();
+    things_.face({5.51, 0.1, 0.3}, {0.0, 1.0, 0.0}, neighbour_height, neighbour);
+    segments_ = found(things_);
+    ASSERT_EQ(segments_.size(), 1U);
+    ASSERT_EQ(segments_[0].echoes.size(), things_.judged.points.size());
+  }
+
+  /// Numbers of the echoes that move.
+  std::vector<std::size_t> moving(Proof proof = Proof::kEnteredFree) {
+    std::vector<Proof> proofs;
+    trimmer_.trim(things_.judged, segments_, {{proof, false}}, proofs);
+    std::vector<std::size_t> echoes;
+    for (std::size_t i = 0; i < proofs.size(); ++i) {
+      if (proofs[i] == Proof::kNone) continue;
+      EXPECT_EQ(proofs[i], proof);
+      echoes.push_back(i);
+    }
+    return echoes;
+  }
+
+  JudgedScene things_{0.0};
+  std::size_t mover_ = 0;
+  Trimmer trimmer_{kReach, ObjectConfig{}};
+  Segments segments_;
+};
+
+TEST_F(Trimming, ASettledNeighbourGoes) {
+  build(1.2, Place::kSettled, 1.2);
+  const std::vector<std::size_t> echoes = moving();
+  ASSERT_EQ(echoes.size(), mover_);
+  EXPECT_EQ(echoes.back(), mover_ - 1);
+}
+
+TEST_F(Trimming, AnUnobservedPartThatIsSmallerStays) {
+  build(1.2, Place::kUnobserved, 0.8);
+  EXPECT_EQ(moving().size(), things_.judged.points.size());
+}
+
+TEST_F(Trimming, AnUnobservedNeighbourThatIsLargerGoes) {
+  build(0.8, Place::kUnobserved, 1.2);
+  EXPECT_EQ(moving().size(), mover_);
+}
+
+TEST_F(Trimming, WhatDoesNotMoveHasNoProof) {
+  build(1.2, Place::kSettled, 1.2);
+  EXPECT_TRUE(moving(Proof::kNone).empty());
+}
+
+/// A car's rear and side at x 5 to 9, y 2 to 3.8, that touches the front of a house seen for the first time.
+JudgedScene carAtAHouse() {
+  JudgedScene things(0.0);
+  things.face({5.0, 2.0, 0.3}, {4.0, 0.0, 0.0}, 1.2, Place::kUnobserved);
+  things.face({5.0, 2.0, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kUnobserved);
+  things.face({2.0, 4.1, 0.3}, {14.0, 0.0, 0.0}, 3.0, Place::kUnobserved);
+  return things;
+}
+
+Prediction expectedCar(bool moves_whole = true, double x = 7.0) {
+  return {{x, 2.9, 0.9}, {4.0, 1.8, 1.2}, {4.0, 1.8, 1.2}, moves_whole};
+}
+
+TEST(Segmenter, WhatIsExpectedIsCutOutOfWhatItRanInto) {
+  const JudgedScene things = carAtAHouse();
+  EXPECT_EQ(found(things).size(), 1U);
+  const Segments segments = found(things, {expectedCar()});
+  ASSERT_EQ(segments.size(), 2U);
+  EXPECT_FALSE(segments[0].cut_out);
+  EXPECT_TRUE(segments[1].cut_out);
+  EXPECT_EQ(segments[1].echoes.size(), (41U + 19U) * 13U);
+  EXPECT_NEAR(segments[1].extent().x(), 4.0, 1e-4);
+  EXPECT_EQ(segments[0].echoes.size() + segments[1].echoes.size(), things.judged.points.size());
+}
+
+TEST(Segmenter, NothingIsCutOutWithoutAReason) {
+  const JudgedScene things = carAtAHouse();
+  EXPECT_EQ(found(things, {expectedCar(false)}).size(), 1U) << "it was never seen to move as one";
+  EXPECT_EQ(found(things, {expectedCar(true, 40.0)}).size(), 1U) << "it is expected elsewhere";
+  EXPECT_EQ(found(things, {{{9.0, 4.0, 1.5}, {14.0, 2.4, 3.0}, {14.0, 2.4, 3.0}, true}}).size(), 1U)
+      << "the whole looks like it";
+  EXPECT_EQ(found(things, {{{5.0, 2.0, 0.9}, {0.6, 0.6, 1.2}, {0.6, 0.6, 1.2}, true}}).size(), 1U)
+      << "too short to settle under itself";
+}
+
+TEST(Segmenter, ALongThingThatIsExpectedStaysWholeWhereItsSideSettles) {
+  JudgedScene things(0.0);
+  things.face({5.0, 2.0, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kUnobserved);
+  things.face({5.0, 2.0, 0.3}, {1.2, 0.0, 0.0}, 1.2, Place::kSettled);
+  things.face({6.3, 2.0, 0.3}, {2.7, 0.0, 0.0}, 1.2, Place::kUnobserved);
+  for (int i = 0; i < 6; ++i) things.echo({9.0, 2.0, 0.3 + 0.1 * i}, Place::kNew);
+  const Segments apart = found(things);
+  EXPECT_EQ(std::count_if(apart.begin(), apart.end(), [](const Segment& c) { return c.settled_echoes > 0; }), 0);
+  const Segments whole = found(things, {expectedCar(false)});
+  ASSERT_EQ(whole.size(), 1U);
+  EXPECT_EQ(whole[0].echoes.size(), things.judged.points.size());
+}
+
+TEST(Segmenter, AThingThatHidesAmongWhatIsSettledIsTakenFromIt) {
+  JudgedScene things(0.0);
+  things.face({6.0, 1.0, 0.3}, {0.0, 0.5, 0.0}, 1.5, Place::kUnobserved);
+  things.face({6.0, 1.6, 0.3}, {0.0, 6.0, 0.0}, 1.5, Place::kSettled);
+  EXPECT_EQ(found(things)[0].settled_echoes, 61 * 16) << "nothing is new, nothing is expected";
+  const Segments segments = found(things, {{{6.0, 1.2, 1.0}, {0.1, 0.5, 1.5}, {0.1, 0.5, 1.5}, false}});
+  ASSERT_EQ(segments.size(), 1U);
+  EXPECT_EQ(segments[0].echoes.size(), 6U * 16U);
+}
+
+TEST(Segmenter, AnEdgeIsThinAndFarThingsAreNot) {
+  Segment edge;
+  edge.low = Eigen::Vector3d(12.0, -1.0, 2.0);
+  edge.high = Eigen::Vector3d(12.0, 1.0, 2.1);
+  EXPECT_TRUE(isThin(edge, Eigen::Vector3d::Zero()));
+  EXPECT_FALSE(isThin(edge, Eigen::Vector3d(-20.0, 0.0, 0.0))) << "beams are too sparse to tell";
+  edge.high.z() = 2.5;
+  EXPECT_FALSE(isThin(edge, Eigen::Vector3d::Zero()));
+}
+
+}  // namespace
+}  // namespace donex
