@@ -14,8 +14,8 @@ using sensor_msgs::PointField;
 struct Row {
   float x, y, z;
   std::uint32_t rgb;
-  std::uint8_t reason;
-  std::array<std::uint8_t, 3> padding;
+  std::uint8_t reason, proof;
+  std::array<std::uint8_t, 2> padding;
 };
 static_assert(sizeof(Row) == 20, "the fields below count on it");
 
@@ -58,17 +58,20 @@ sensor_msgs::PointCloud2Ptr explainScan(const LabeledScan& scan) {
   std::vector<Eigen::Vector3f> positions;  // as they came: the scan's own are de-skewed, and may have another origin
   parseEchoes(*scan.cloud, scan.layout, positions);
   const std::vector<EchoReason> reasons = scan.detector.reasons();
-  const bool tells = reasons.size() == positions.size();
+  const std::vector<Proof> proofs = scan.detector.proofs();
+  const bool tells = reasons.size() == positions.size(), proves = proofs.size() == positions.size();
   const Eigen::Isometry3f base_from_sensor = scan.scan.base_from_sensor.cast<float>();
   auto cloud = cloudOfPlaces(scan.cloud->header, positions.size(), sizeof(Row));
   addField(*cloud, "rgb", offsetof(Row, rgb), PointField::FLOAT32);
   addField(*cloud, "reason", offsetof(Row, reason), PointField::UINT8);
+  addField(*cloud, "proof", offsetof(Row, proof), PointField::UINT8);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const EchoReason by_label = scan.labels.dynamic[i] != 0 ? EchoReason::kMoving : EchoReason::kSettled;
     const EchoReason reason = tells ? reasons[i] : by_label;
     const Eigen::Vector3f& p = positions[i];
-    const Row row{p.x(), p.y(), p.z(), colourOf(reason, (base_from_sensor * p).z()), static_cast<std::uint8_t>(reason),
-                  {}};
+    const Proof proof = proves ? proofs[i] : Proof::kNone;
+    const std::uint32_t rgb = colourOf(reason, (base_from_sensor * p).z());
+    const Row row{p.x(), p.y(), p.z(), rgb, static_cast<std::uint8_t>(reason), static_cast<std::uint8_t>(proof), {}};
     std::memcpy(cloud->data.data() + i * sizeof(Row), &row, sizeof(Row));
   }
   return cloud;

@@ -21,6 +21,7 @@ MovingObject messageOf(const Object& object) {
   message.velocity = vectorOf(object.velocity);
   message.age.fromSec(object.age);
   message.echoes = object.echoes;
+  message.proof = nameOf(object.proof);
   return message;
 }
 

@@ -123,6 +123,7 @@ TEST(ExplanationClouds, EveryReasonForStaticHasAColour) {
     }
   }
   ASSERT_EQ(reasonAt(*cloud, alone), EchoReason::kNewAlone);
+  EXPECT_EQ(numberAt(*cloud, "proof", alone), 0) << "no motion was proven";
   const Colour orange = colourAt(*cloud, alone);
   EXPECT_TRUE(orange.red > 200 && orange.green > 100 && orange.green < 180 && orange.blue < 50) << "orange";
   ASSERT_EQ(reasonAt(*cloud, unobserved), EchoReason::kUnobserved);

@@ -29,6 +29,7 @@ TEST(ObjectMessages, SayWhatTheDetectorKnows) {
   car.velocity << 8.0, 4.0, 0.0;
   car.age = 2.5;
   car.echoes = 321;
+  car.proof = Proof::kRearReceded;
   const MovingObjectsPtr message = toMessage(detector, ros::Time(100.5), "odom");
   EXPECT_EQ(message->header.frame_id, "odom");
   EXPECT_EQ(message->header.stamp, ros::Time(100.5));
@@ -44,6 +45,8 @@ TEST(ObjectMessages, SayWhatTheDetectorKnows) {
   EXPECT_EQ(moving.velocity.y, 4.0);
   EXPECT_EQ(moving.age, ros::Duration(2.5));
   EXPECT_EQ(moving.echoes, 321U);
+  EXPECT_EQ(moving.proof, "rear_receded");
+  EXPECT_EQ(message->objects[0].proof, "none");
 }
 
 TEST(ObjectMessages, SayAlsoThatNothingMoves) {

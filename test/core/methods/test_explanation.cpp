@@ -62,19 +62,26 @@ TEST(Explanation, ReasonsAgreeWithTheLabels) {
     config.method = method;
     const auto detector = makeDetector(config);
     std::set<EchoReason> seen;
+    std::set<Proof> proven;
     for (const TrueScan& scan : drive) {
       EchoLabels labels;
       detector->process(scan.scan, labels);
       const auto reasons = detector->reasons();
+      const auto proofs = detector->proofs();
       ASSERT_EQ(reasons.size(), scan.scan.echoes.size());
+      ASSERT_EQ(proofs.size(), scan.scan.echoes.size());
       if (&scan == &drive.front()) continue;
       for (std::size_t i = 0; i < reasons.size(); ++i) {
         expectAgreement(reasons[i], labels.dynamic[i] != 0, labels.observed[i] != 0,
                         "echo " + std::to_string(i) + ": ");
+        EXPECT_EQ(proofs[i] != Proof::kNone, labels.dynamic[i] != 0) << "echo " << i << ": " << nameOf(proofs[i]);
         seen.insert(reasons[i]);
+        proven.insert(proofs[i]);
       }
     }
     EXPECT_GE(seen.size(), 5U) << "ground, unobserved, settled, outside and moving at least";
+    EXPECT_EQ(proven.count(Proof::kEnteredFree), 1U);
+    EXPECT_EQ(proven.count(Proof::kAlone), 0U) << "objects are formed";
   }
 }
 
