@@ -18,7 +18,7 @@ enum class Method {
   kPeopleremover,
 };
 enum class Compensation { kScroll, kResample };
-enum class OdometrySource { kPose, kTwist, kTf, kNone };
+enum class OdometrySource { kPose, kTwist, kTf, kNone, kLidar, kAuto };
 /// How a cloud says when each echo was measured: relative to its stamp or absolute, in which unit.
 enum class TimeEncoding {
   kAuto,
@@ -41,9 +41,10 @@ inline const std::vector<std::string>& namesOf(Compensation) {
   return names;
 }
 inline const std::vector<std::string>& namesOf(OdometrySource) {
-  static const std::vector<std::string> names{"pose", "twist", "tf", "none"};
+  static const std::vector<std::string> names{"pose", "twist", "tf", "none", "lidar", "auto"};
   return names;
 }
+inline const std::string& nameOf(OdometrySource source) { return namesOf(source).at(static_cast<std::size_t>(source)); }
 inline const std::vector<std::string>& namesOf(TimeEncoding) {
   static const std::vector<std::string> names{"auto",        "relative_s", "relative_us",
                                               "relative_ns", "absolute_s", "absolute_ns"};
@@ -95,6 +96,7 @@ struct MotionConfig {
   double max_extrapolation = 0.02;  // [s]
   double odometry_timeout = 0.6;    // [s]
   bool deskew = true;
+  bool publish_tf = false;
 };
 
 /// What the clouds of a driver do not say themselves.

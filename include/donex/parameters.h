@@ -97,11 +97,15 @@ void visitObjects(ObjectConfig& o, Visitor& visit) {
 template <class Visitor>
 void visitMotion(MotionConfig& m, Visitor& visit) {
   visit(ParameterInfo{"odometry_source", "",
-                      "ego motion: odometry pose, odometry twist integrated, tf, or none for a sensor at rest", false},
+                      "ego motion: odometry pose, odometry twist integrated, tf, none for a sensor at rest, lidar for "
+                      "the clouds alone, or auto: odometry where some comes, else tf, else the clouds",
+                      false},
         m.source);
-  visit(ParameterInfo{"fixed_frame", "",
-                      "frame of the motion with odometry_source tf; otherwise the odometry's own frame is used", false},
-        m.fixed_frame);
+  visit(
+      ParameterInfo{"fixed_frame", "",
+                    "frame of the motion with odometry_source tf or lidar; otherwise the odometry's own frame is used",
+                    false},
+      m.fixed_frame);
   visit(ParameterInfo{"base_frame", "", "vehicle frame; the odometry's child frame where it names one", false},
         m.base_frame);
   visit(ParameterInfo{"max_extrapolation", "s", "how far beyond the newest odometry a pose may be extrapolated", false},
@@ -111,6 +115,10 @@ void visitMotion(MotionConfig& m, Visitor& visit) {
   visit(ParameterInfo{"deskew", "", "move each echo to the cloud's stamp by its own time, where the cloud carries one",
                       false},
         m.deskew);
+  visit(ParameterInfo{"publish_tf", "",
+                      "where the ego motion is found in the clouds: also publish it as tf, fixed_frame to the vehicle",
+                      false},
+        m.publish_tf);
 }
 
 template <class Visitor>

@@ -21,6 +21,8 @@ namespace donex {
 namespace fs = std::filesystem;
 namespace {
 
+using Bags = std::vector<std::unique_ptr<rosbag::Bag>>;
+
 /// Feeds a bag's messages to the pipeline as the node gets them, and hands on what comes out.
 class Labeler {
  public:
@@ -128,13 +130,56 @@ void requireLabels(const LabelBagSummary& summary, const std::string& file) {
                               summary.points, remarksOf(summary)));
 }
 
+std::string motionOf(OdometrySource source, const std::string& odom, const MotionConfig& config) {
+  switch (source) {
+    case OdometrySource::kPose: return "poses of odometry on " + odom;
+    case OdometrySource::kTwist: return "velocities of odometry on " + odom;
+    case OdometrySource::kTf: return fmt::format("tf, {} in {}", config.base_frame, config.fixed_frame);
+    case OdometrySource::kNone: return "none, the sensor is at rest";
+    default: return "found in the clouds";
+  }
+}
+
 LabelBagSummary chooseTopics(rosbag::View& view, const LabelBagOptions& options, const std::string& file) {
   LabelBagSummary summary;
   summary.points = chooseTopic(view, options.points, "sensor_msgs/PointCloud2", file, "--points");
   const OdometrySource source = options.config.motion.source;
   const bool needs_odometry = source == OdometrySource::kPose || source == OdometrySource::kTwist;
   if (needs_odometry) summary.odom = chooseTopic(view, options.odom, "nav_msgs/Odometry", file, "--odom");
+  summary.motion = motionOf(source, summary.odom, options.config.motion);
   return summary;
+}
+
+/// Whether a bag's tf tells where the vehicle is, judged by the first of it.
+bool tellsMotionByTf(const Bags& bags, const MotionConfig& config) {
+  constexpr std::size_t kSome = 3000;  // messages; at 50 Hz from two sources half a minute
+  tf2::BufferCore tf;
+  std::size_t read = 0;
+  rosbag::View view;
+  for (const auto& bag : bags)
+    view.addQuery(*bag, rosbag::TopicQuery(std::vector<std::string>{"/tf", "/tf_static", "tf", "tf_static"}));
+  for (const rosbag::MessageInstance& message : view) {
+    const bool is_static = absoluteTopic(message.getTopic()) == "/tf_static";
+    const auto parsed = parse<tf2_msgs::TFMessage>(message);
+    for (const auto& transform : parsed->transforms) tf.setTransform(transform, "bag", is_static);
+    if (tf.canTransform(config.fixed_frame, config.base_frame, ros::Time(0))) return true;
+    if (++read >= kSome) break;
+  }
+  return false;
+}
+
+/// odometry_source auto: odometry where there is a topic of it, else tf, else the clouds.
+LabelBagOptions chosenMotion(const LabelBagOptions& options, rosbag::View& view, const Bags& bags) {
+  LabelBagOptions chosen = options;
+  OdometrySource& source = chosen.config.motion.source;
+  if (source != OdometrySource::kAuto) return chosen;
+  const bool has_odometry = !options.odom.empty() || hasTopicOf(view, "nav_msgs/Odometry");
+  if (has_odometry) {
+    source = OdometrySource::kPose;
+  } else {
+    source = tellsMotionByTf(bags, chosen.config.motion) ? OdometrySource::kTf : OdometrySource::kLidar;
+  }
+  return chosen;
 }
 
 /// The parts of a recording, open.
@@ -150,6 +195,7 @@ class Recording {
   }
 
   std::size_t parts() const { return bags_.size(); }
+  const Bags& bags() const { return bags_; }
   rosbag::View& part(std::size_t i) { return *views_[i]; }
   rosbag::View& all() { return all_; }
   std::string name(std::size_t part = 0) const { return files_[part].string(); }
@@ -165,7 +211,7 @@ class Recording {
   }
 
   BagParts files_;
-  std::vector<std::unique_ptr<rosbag::Bag>> bags_;
+  Bags bags_;
   std::vector<std::unique_ptr<rosbag::View>> views_;
   rosbag::View all_;
 };
@@ -217,7 +263,7 @@ LabelBagSummary judge(Recording& recording, const LabelBagOptions& options, cons
 LabelBagSummary judgeBag(const BagParts& in, const LabelBagOptions& options, const LabelBagSink& sink,
                          const LabelBagProgress& progress) {
   Recording recording(in);
-  return judge(recording, options, sink, progress);
+  return judge(recording, chosenMotion(options, recording.all(), recording.bags()), sink, progress);
 }
 
 LabelBagSummary labelBag(const BagParts& in, const BagParts& out, const LabelBagOptions& options,
@@ -225,7 +271,8 @@ LabelBagSummary labelBag(const BagParts& in, const BagParts& out, const LabelBag
   if (in.empty() || in.size() != out.size()) throw std::invalid_argument("a bag has no output, or an output no bag");
   Recording recording(in);  // faults before the first copy
   requireNewTopic(recording.all(), options.labeled, recording.name());
-  chooseTopics(recording.all(), options, recording.name());
+  const LabelBagOptions chosen = chosenMotion(options, recording.all(), recording.bags());
+  chooseTopics(recording.all(), chosen, recording.name());
   const std::string topic = absoluteTopic(options.labeled);
   std::size_t writing = 0;
   auto writer = std::make_unique<BagWriter>(out[0], in[0]);
@@ -240,7 +287,7 @@ LabelBagSummary labelBag(const BagParts& in, const BagParts& out, const LabelBag
     advance(part);
     writer->write(topic, now, *labelCloud(*scan.cloud, scan.layout, scan.labels));
   };
-  LabelBagSummary summary = judge(recording, options, write, progress);
+  LabelBagSummary summary = judge(recording, chosen, write, progress);
   advance(out.size() - 1);
   writer->commit();
   return summary;

@@ -1,5 +1,6 @@
 #include "bag/topics.h"
 
+#include <algorithm>
 #include <map>
 #include <vector>
 
@@ -59,6 +60,11 @@ std::string chooseTopic(rosbag::View& view, const std::string& wanted, const std
   const Topics topics = topicsOf(view);
   return wanted.empty() ? onlyTopic(topics, datatype, file, option)
                         : namedTopic(topics, wanted, datatype, file, option);
+}
+
+bool hasTopicOf(rosbag::View& view, const std::string& datatype) {
+  const Topics topics = topicsOf(view);
+  return std::any_of(topics.begin(), topics.end(), [&](const auto& topic) { return topic.second == datatype; });
 }
 
 void requireNewTopic(rosbag::View& view, const std::string& topic, const std::string& file) {

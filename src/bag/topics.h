@@ -12,6 +12,8 @@ namespace donex {
 std::string chooseTopic(rosbag::View& view, const std::string& wanted, const std::string& datatype,
                         const std::string& file, const std::string& option);
 
+bool hasTopicOf(rosbag::View& view, const std::string& datatype);
+
 /// Throws DataError when the bag has the topic already.
 void requireNewTopic(rosbag::View& view, const std::string& topic, const std::string& file);
 

@@ -33,11 +33,11 @@ void DriveRun::locate(Scan& scan, std::size_t index) {
   scan.odom_from_base = tracked_[index].odom_from_sensor;
 }
 
-void DriveRun::learn(const Scan& scan, std::size_t index) {
+void DriveRun::learn(std::size_t index) {
   const bool is_newest = live_ != nullptr && index + 1 == tracked_.size();
   if (!is_newest) return;
   const double start = cpuTime();
-  odometry_->learn(scan.echoes, labels_.dynamic);
+  odometry_->learn(labels_.dynamic);
   odometry_times_[index] += cpuTime() - start;
 }
 
@@ -51,7 +51,7 @@ void DriveRun::run(const SequenceReader& sequence, std::size_t scans, const Sink
       Scan scan = toScan(sequence.scan(i));
       if (odometry_) locate(scan, i);
       judge(scan, i);
-      if (odometry_) learn(scan, i);
+      if (odometry_) learn(i);
       if (counts) sink(i, scan, labels_);
       progress();
     }

@@ -47,7 +47,7 @@ class DriveRun {
   const Detector& detector() const { return whole_ == nullptr ? *live_ : *whole_; }
   void judge(const Scan& scan, std::size_t index);
   void locate(Scan& scan, std::size_t index);
-  void learn(const Scan& scan, std::size_t index);
+  void learn(std::size_t index);
 
   std::unique_ptr<Detector> live_;
   std::unique_ptr<WholeDriveDetector> whole_;

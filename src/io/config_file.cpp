@@ -94,10 +94,10 @@ std::string readText(const std::filesystem::path& file) {
 
 }  // namespace
 
-Config readConfigFile(const std::filesystem::path& file) {
+Config readConfigFile(const std::filesystem::path& file, const Config& base) {
   const std::string source = file.string();
   const YAML::Node document = parseFile(readText(file), source);
-  Config config;
+  Config config = base;
   if (!document.IsDefined() || document.IsNull()) return config;
   if (!document.IsMap()) {
     throw DataError(lineOf(source, document.Mark()) + ": must be a map of parameter names to values");

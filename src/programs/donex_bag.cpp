@@ -49,6 +49,11 @@ void report(const LabelBagSummary& summary) {
   const PipelineCounts& counts = summary.counts;
   fmt::print("{} messages; clouds {}, odometry {}\n", summary.messages, summary.points,
              summary.odom.empty() ? "not needed" : summary.odom);
+  fmt::print("ego motion: {}\n", summary.motion);
+  if (counts.degenerate > 0) {
+    fmt::print("ego motion left open in part by {} clouds, and predicted there: their labels are less sure\n",
+               counts.degenerate);
+  }
   fmt::print("{} of {} clouds labelled, {} dropped; {} of {} odometry messages refused\n", counts.clouds_labeled,
              counts.clouds_in, counts.dropped.total(), counts.refused.total(), counts.odometry_in);
   fmt::print("time a scan: median {:.2f} ms, p99 {:.2f} ms\n", 1e3 * quantile(summary.times, 0.5),
@@ -109,12 +114,17 @@ int main(int argc, char** argv) {
       ->required()
       ->expected(2, 100000);
   app.add_option("--points", options.points, "topic of the clouds; needed where there are several");
-  app.add_option("--odom", options.odom, "topic of the odometry; needed where there are several");
+  app.add_option("--odom", options.odom,
+                 "topic of the odometry; needed where there are several. By default (odometry_source auto) the ego "
+                 "motion is that of "
+                 "the odometry, else of tf, else it is found in the clouds");
   app.add_option("--labeled", options.labeled, "topic of the labelled clouds, by default " + options.labeled);
   app.add_option("--summary", arguments.summary, "write counts, times and memory to this file (JSON)");
   const donex::ConfigOptions config(app);
   return donex::runProgram(app, argc, argv, [&] {
-    options.config = config.config();
+    donex::Config defaults;
+    defaults.motion.source = donex::OdometrySource::kAuto;
+    options.config = config.config(defaults);
     donex::run(app, arguments, options);
   });
 }

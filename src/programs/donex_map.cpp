@@ -155,5 +155,7 @@ int main(int argc, char** argv) {
   app.add_option("--points", arguments.points, "topic of a bag's clouds; needed where there are several");
   app.add_option("--odom", arguments.odom, "topic of a bag's odometry; needed where there are several");
   const donex::ConfigOptions config(app);
-  return donex::runProgram(app, argc, argv, [&] { donex::run(app, arguments, config.config()); });
+  donex::Config defaults;
+  defaults.motion.source = donex::OdometrySource::kAuto;  // of bags; a sequence has poses
+  return donex::runProgram(app, argc, argv, [&] { donex::run(app, arguments, config.config(defaults)); });
 }

@@ -80,8 +80,8 @@ ConfigOptions::ConfigOptions(CLI::App& app) {
       ->multi_option_policy(CLI::MultiOptionPolicy::Join);
 }
 
-Config ConfigOptions::config() const {
-  Config config = file_.empty() ? Config() : readConfigFile(file_);
+Config ConfigOptions::config(const Config& base) const {
+  Config config = file_.empty() ? base : readConfigFile(file_, base);
   std::vector<std::string> settings;
   if (!method_.empty()) settings.push_back("method=" + method_);
   if (!voxel_size_.empty()) settings.push_back("voxel_size=" + voxel_size_);

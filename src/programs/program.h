@@ -42,8 +42,8 @@ class ConfigOptions {
  public:
   explicit ConfigOptions(CLI::App& app);
 
-  /// Throws DataError for the file, SettingError for the other options.
-  Config config() const;
+  /// On top of `base`. Throws DataError for the file, SettingError for the other options.
+  Config config(const Config& base = Config()) const;
 
  private:
   std::string file_;

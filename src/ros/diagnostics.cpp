@@ -61,6 +61,7 @@ void Diagnostics::odometryArrived(const ros::Time& stamp) {
 void Diagnostics::scanPublished(const LabeledScan& scan) {
   const auto now = Clock::now();
   published_.push_back({now, scan.processing_time, seconds(now - scan.received)});
+  if (scan.motion.tracked) tracking_ = describe(scan.motion.tracked->status);
 }
 
 void Diagnostics::dropped(DropReason reason, const std::string& text) {
@@ -145,6 +146,11 @@ void Diagnostics::addCounts(DiagnosticStatusWrapper& status) const {
   for (std::size_t i = 0; i < kDropReasons; ++i) {
     const auto reason = static_cast<DropReason>(i);
     status.add(std::string("dropped: ") + describe(reason), counts.dropped.of(reason));
+  }
+  status.add("ego motion from", nameOf(pipeline_.motion().source()));
+  if (!tracking_.empty()) {
+    status.add("ego motion from the clouds", tracking_);
+    status.add("clouds labelled, ego motion open in part", counts.degenerate);
   }
   status.add("odometry in", counts.odometry_in);
   for (std::size_t i = 0; i < kOdometryRefusals; ++i) {

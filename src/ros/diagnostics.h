@@ -60,6 +60,7 @@ class Diagnostics {
   ros::Time newest_cloud_, newest_odometry_;  // stamps
   std::size_t failures_ = 0, failures_reported_ = 0;
   DropReason last_reason_ = DropReason::kInternalError;
+  std::string tracking_;  // empty where the ego motion is not found in the clouds
   std::string last_drop_, last_refusal_, last_failure_, last_strange_times_;
 };
 

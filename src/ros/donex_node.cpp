@@ -12,6 +12,7 @@
 
 #include "donex/memory_bound.h"
 #include "ros/diagnostics.h"
+#include "ros/odometry_publisher.h"
 #include "ros/parameters.h"
 #include "ros/pipeline.h"
 #include "ros/reconfigure.h"
@@ -72,6 +73,7 @@ class DonexNode::Implementation {
   Pipeline pipeline_;
   Diagnostics diagnostics_;
   ScanPublisher publisher_;
+  OdometryPublisher odometry_publisher_;
   std::unique_ptr<Reconfigure> reconfigure_;
   bool work_is_queued_ = false;
   double work_queued_at_ = 0.0;  // [s]
@@ -87,7 +89,8 @@ DonexNode::Implementation::Implementation(const ros::NodeHandle& nh, const ros::
       config_(readParameters(pnh)),
       pipeline_(config_, tf_, events()),
       diagnostics_(nh, pnh, pipeline_, usesOdometry(config_.motion.source)),
-      publisher_(pnh) {
+      publisher_(pnh),
+      odometry_publisher_(pnh, config_.motion) {
   ROS_INFO_STREAM_NAMED("donex", "memory that the grid takes for scans of "
                                      << kUsualScan << " echoes: " << std::lround(memoryBound(config_, kUsualScan) / 1e6)
                                      << " MB at most (memory_limit " << config_.memory_limit << " MB)");
@@ -193,6 +196,7 @@ PipelineEvents DonexNode::Implementation::events() {
     diagnostics_.refused(full);
   };
   events.forgotten = [](const std::string& text) { ROS_WARN_STREAM_NAMED("donex", text); };
+  events.motion_chosen = [](const std::string& text) { ROS_INFO_STREAM_NAMED("donex", text); };
   events.strange_times = [this](const std::string& text) {
     ROS_WARN_STREAM_THROTTLE_NAMED(kLogPeriod, "donex", text);
     diagnostics_.strangeTimes(text);
@@ -203,6 +207,7 @@ PipelineEvents DonexNode::Implementation::events() {
 void DonexNode::Implementation::publish(const LabeledScan& scan) {
   publisher_.publishLabels(scan);
   diagnostics_.scanPublished(scan);
+  odometry_publisher_.publish(scan);
   publisher_.publishTheRest(scan, config_);
 }
 

@@ -14,6 +14,7 @@ const char* describe(DropReason reason) {
     case DropReason::kDuplicate: return "duplicate stamp";
     case DropReason::kTimeRanBack: return "time ran back";
     case DropReason::kInternalError: return "internal error";
+    case DropReason::kLost: return "ego motion not found";
   }
   return "unknown";
 }

@@ -18,8 +18,9 @@ enum class DropReason {
   kDuplicate,       ///< of the same stamp as another cloud
   kTimeRanBack,     ///< waiting when time ran back
   kInternalError,   ///< an exception
+  kLost,            ///< the ego motion was to be found in the clouds, and this one does not tell it
 };
-constexpr std::size_t kDropReasons = 10;
+constexpr std::size_t kDropReasons = 11;
 
 /// In words, fit for a log line and a key of the diagnostics.
 const char* describe(DropReason reason);

@@ -57,6 +57,15 @@ OdometryVerdict verdictOn(AddResult result, double stamp) {
   return refusedFor(OdometryRefusal::kNonFinite, textOf("odometry of ", stamp, " s is not finite"));
 }
 
+bool isOdometry(OdometrySource source) { return source == OdometrySource::kPose || source == OdometrySource::kTwist; }
+
+/// The mean velocity from one pose to the next, in the axes of the first.
+Twist twistBetween(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, double elapsed) {
+  const Eigen::Isometry3d motion = from.inverse() * to;
+  const Eigen::AngleAxisd turn(Eigen::Matrix3d(motion.linear()));
+  return {motion.translation() / elapsed, turn.axis() * (turn.angle() / elapsed)};
+}
+
 Twist twistOf(const nav_msgs::Odometry& odometry) {
   const auto& linear = odometry.twist.twist.linear;
   const auto& angular = odometry.twist.twist.angular;
@@ -83,9 +92,19 @@ MotionMissing missing(MotionFault fault, double stamp) {
 }  // namespace
 
 MotionSource::MotionSource(const MotionConfig& config, const tf2::BufferCore& tf)
-    : config_(config), tf_(tf), odometry_(optionsFor(config)) {}
+    : config_(config), source_(config.source), tf_(tf), odometry_(optionsFor(config)) {}
 
-void MotionSource::reset() { odometry_.reset(); }
+void MotionSource::reset() {
+  odometry_.reset();
+  scan_odometry_.reset();
+  mounting_.reset();
+}
+
+bool MotionSource::wantsOdometry() const { return isOdometry(source_) || source_ == OdometrySource::kAuto; }
+
+void MotionSource::learn(const std::vector<std::uint8_t>& dynamic) {
+  if (source_ == OdometrySource::kLidar) scan_odometry_.learn(dynamic);
+}
 
 bool MotionSource::adoptFrames(const nav_msgs::Odometry& odometry) {
   const std::string child = odometry.child_frame_id.empty() ? config_.base_frame : odometry.child_frame_id;
@@ -106,7 +125,7 @@ OdometryVerdict MotionSource::add(const nav_msgs::Odometry& odometry) {
   OdometrySample sample;
   sample.stamp = stamp;
   sample.twist = twistOf(odometry);
-  if (config_.source != OdometrySource::kPose) return addSample(odometry, sample);
+  if (source_ == OdometrySource::kTwist) return addSample(odometry, sample);
 
   const auto pose = poseOf(odometry);
   if (pose) {
@@ -137,18 +156,77 @@ std::variant<Eigen::Isometry3d, MotionMissing> MotionSource::lookup(const std::s
   }
 }
 
-MotionAnswer MotionSource::during(const ScanTimes& times, const std::string& sensor_frame, bool settle) {
+MotionAnswer MotionSource::during(const ScanTimes& times, const std::string& sensor_frame, bool settle,
+                                  const std::vector<Eigen::Vector3f>& echoes) {
   const std::string sensor = frameName(sensor_frame);
-  switch (config_.source) {
+  if (source_ == OdometrySource::kAuto) {
+    if (const auto nothing = choose(times, settle)) return *nothing;
+  }
+  switch (source_) {
     case OdometrySource::kNone: {
       // At rest the sensor itself is the vehicle: nothing is missing that a transform could tell.
       ScanMotion at_rest;
-      at_rest.odom_frame = sensor;
+      at_rest.odom_frame = at_rest.base_frame = sensor;
       return at_rest;
     }
     case OdometrySource::kTf: return fromTf(times, sensor);
+    case OdometrySource::kLidar: return fromScans(times, sensor, settle, echoes);
     default: return fromOdometry(times, sensor, settle);
   }
+}
+
+/// Odometry where some has come while the first cloud waited, else tf, else the clouds. What is chosen stays.
+std::optional<MotionMissing> MotionSource::choose(const ScanTimes& times, bool settle) {
+  const std::string fixed = frameName(config_.fixed_frame), base = frameName(config_.base_frame);
+  if (!odometry_.empty()) {
+    source_ = OdometrySource::kPose;
+    choice_ = "ego motion from odometry messages";
+  } else if (!settle) {
+    return MotionMissing{DropReason::kNoOdometry, "no odometry yet", true};
+  } else if (!times.stamp.isZero() && tf_.canTransform(fixed, base, times.stamp)) {
+    source_ = OdometrySource::kTf;
+    choice_ = textOf("ego motion from tf '", fixed, "' <- '", base, "': there are no odometry messages");
+  } else {
+    source_ = OdometrySource::kLidar;
+    choice_ =
+        textOf("ego motion from the clouds: there are no odometry messages and no tf '", fixed, "' <- '", base, "'");
+  }
+  return std::nullopt;
+}
+
+/// From tf where that knows the vehicle's frame; else the sensor is the vehicle.
+std::optional<MotionMissing> MotionSource::mount(const ScanTimes& times, const std::string& sensor_frame, bool settle) {
+  if (mounting_) return std::nullopt;
+  const auto found = lookup(frameName(config_.base_frame), sensor_frame, times.stamp);
+  const auto* mounting = std::get_if<Eigen::Isometry3d>(&found);
+  if (mounting == nullptr && !settle) return std::get<MotionMissing>(found);
+  mounting_ = mounting != nullptr ? *mounting : Eigen::Isometry3d::Identity();
+  mounted_frame_ = mounting != nullptr ? frameName(config_.base_frame) : sensor_frame;
+  return std::nullopt;
+}
+
+MotionAnswer MotionSource::fromScans(const ScanTimes& times, const std::string& sensor_frame, bool settle,
+                                     const std::vector<Eigen::Vector3f>& echoes) {
+  if (const auto nothing = mount(times, sensor_frame, settle)) return *nothing;
+  const double stamp = times.stamp.toSec();
+  const Eigen::Isometry3d before = scan_odometry_.odomFromBase();
+  const EgoMotion& track = scan_odometry_.track();
+  const double elapsed = track.empty() ? 0.0 : stamp - track.newestStamp();
+  ScanMotion motion;
+  motion.tracked = scan_odometry_.locate(stamp, echoes, *mounting_);
+  if (motion.tracked->status == TrackingStatus::kLost) {
+    return MotionMissing{DropReason::kLost,
+                         textOf("the cloud of ", stamp, " s does not fit those before, or is too small"), false};
+  }
+  motion.base_from_sensor = *mounting_;
+  motion.odom_from_base = scan_odometry_.odomFromBase();
+  motion.odom_frame = frameName(config_.fixed_frame);
+  motion.base_frame = mounted_frame_;
+  const bool has_velocity = !motion.tracked->is_new_track && elapsed > 0.0;
+  if (has_velocity) motion.twist = twistBetween(before, motion.odom_from_base, elapsed);
+  const bool is_covered = track.poseAt(stamp + times.first) && track.poseAt(stamp + times.last);
+  if (times.spanTime() && is_covered) motion.track = &track;  // not of the first scan of a track
+  return motion;
 }
 
 MotionAnswer MotionSource::fromOdometry(const ScanTimes& times, const std::string& sensor_frame, bool settle) const {
@@ -171,6 +249,7 @@ MotionAnswer MotionSource::fromOdometry(const ScanTimes& times, const std::strin
   motion.base_from_sensor = std::get<Eigen::Isometry3d>(mounting);
   motion.odom_from_base = *odometry_.poseAt(stamp);
   motion.odom_frame = odom_frame_;
+  motion.base_frame = base_frame_;
   if (times.spanTime()) motion.track = &odometry_;
   return motion;
 }
@@ -185,6 +264,7 @@ MotionAnswer MotionSource::fromTf(const ScanTimes& times, const std::string& sen
   motion.base_from_sensor = std::get<Eigen::Isometry3d>(mounting);
   motion.odom_from_base = *tf_track_.poseAt(times.stamp.toSec());
   motion.odom_frame = frameName(config_.fixed_frame);
+  motion.base_frame = frameName(config_.base_frame);
   if (times.spanTime()) motion.track = &tf_track_;
   return motion;
 }

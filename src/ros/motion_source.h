@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include <nav_msgs/Odometry.h>
 #include <ros/time.h>
@@ -12,6 +13,7 @@
 #include "donex/config.h"
 #include "donex/motion/ego_motion.h"
 #include "ros/drop_reason.h"
+#include "ros/scan_odometry.h"
 
 namespace donex {
 
@@ -40,9 +42,12 @@ struct ScanTimes {
 struct ScanMotion {
   Eigen::Isometry3d base_from_sensor = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d odom_from_base = Eigen::Isometry3d::Identity();  ///< at the stamp
-  std::string odom_frame;
+  std::string odom_frame, base_frame;
   /// Covers the scan's times, to de-skew by; null where there is nothing to undo. Valid until the source's next call.
   const EgoMotion* track = nullptr;
+  /// Where the motion was found in the clouds: how well, and the velocity since the scan before.
+  std::optional<TrackedScan> tracked;
+  Twist twist;
 };
 
 /// Why there is no motion (yet).
@@ -64,12 +69,29 @@ class MotionSource {
 
   /// The motion of a scan measured in `sensor_frame`. With `settle` the newest odometry may be extrapolated
   /// as far as configured; without, it has to cover the scan: what comes does not depend on when one asks.
-  MotionAnswer during(const ScanTimes& times, const std::string& sensor_frame, bool settle);
+  /// `echoes` are the scan's, as measured, in the sensor frame [m]; with OdometrySource::kLidar an answer other than
+  /// "may come" is given once a scan, in the order of the stamps.
+  MotionAnswer during(const ScanTimes& times, const std::string& sensor_frame, bool settle,
+                      const std::vector<Eigen::Vector3f>& echoes);
+
+  /// The labels of the scan that was last asked for: what moves tells nothing of the ego motion.
+  void learn(const std::vector<std::uint8_t>& dynamic);
+
+  /// Where the motion comes from; kAuto until that is known.
+  OdometrySource source() const { return source_; }
+  /// In words, once kAuto has found what there is; else empty.
+  const std::string& choice() const { return choice_; }
+  /// Whether an odometry message is of use.
+  bool wantsOdometry() const;
 
   void reset();
 
  private:
   MotionAnswer fromOdometry(const ScanTimes& times, const std::string& sensor_frame, bool settle) const;
+  std::optional<MotionMissing> choose(const ScanTimes& times, bool settle);
+  MotionAnswer fromScans(const ScanTimes& times, const std::string& sensor_frame, bool settle,
+                         const std::vector<Eigen::Vector3f>& echoes);
+  std::optional<MotionMissing> mount(const ScanTimes& times, const std::string& sensor_frame, bool settle);
   MotionAnswer fromTf(const ScanTimes& times, const std::string& sensor_frame);
   std::optional<MotionMissing> trackFromTf(const ScanTimes& times);
   OdometryVerdict addSample(const nav_msgs::Odometry& odometry, const OdometrySample& sample);
@@ -78,10 +100,15 @@ class MotionSource {
   bool adoptFrames(const nav_msgs::Odometry& odometry);
 
   MotionConfig config_;
+  OdometrySource source_;
+  std::string choice_;
   const tf2::BufferCore& tf_;
   EgoMotion odometry_;
-  EgoMotion tf_track_;                   // of one scan
-  std::string odom_frame_, base_frame_;  // of the odometry in use; empty before the first
+  EgoMotion tf_track_;  // of one scan
+  ScanOdometry scan_odometry_;
+  std::optional<Eigen::Isometry3d> mounting_;  // with kLidar; it stays
+  std::string mounted_frame_;                  // the vehicle's, with kLidar
+  std::string odom_frame_, base_frame_;        // of the odometry in use; empty before the first
 };
 
 }  // namespace donex

@@ -53,8 +53,7 @@ void Pipeline::place(WaitingCloud cloud) {
 
 void Pipeline::addOdometry(const nav_msgs::Odometry& odometry) {
   ++counts_.odometry_in;
-  const bool wanted = config_.motion.source == OdometrySource::kPose || config_.motion.source == OdometrySource::kTwist;
-  if (wanted) use(odometry);
+  if (motion_.wantsOdometry()) use(odometry);
 }
 
 void Pipeline::use(const nav_msgs::Odometry& odometry) {
@@ -141,7 +140,11 @@ MotionAnswer Pipeline::motionOf(const WaitingCloud& waiting, bool settle) {
   const auto& header = waiting.cloud->header;
   try {
     parse(waiting);
-    return motion_.during({header.stamp, times_.first, times_.last}, header.frame_id, settle);
+    const bool was_known = motion_.source() != OdometrySource::kAuto;
+    auto motion = motion_.during({header.stamp, times_.first, times_.last}, header.frame_id, settle, scan_.echoes);
+    const bool is_chosen = !was_known && motion_.source() != OdometrySource::kAuto;
+    if (is_chosen && events_.motion_chosen) events_.motion_chosen(motion_.choice());
+    return motion;
   } catch (const std::exception& error) {
     // ros::Time throws where a time of the scan lies before 1970.
     return MotionMissing{DropReason::kInternalError, error.what(), false};
@@ -173,11 +176,23 @@ void Pipeline::label(const WaitingCloud& waiting, const ScanMotion& motion) {
     if (fault != MotionFault::kNone) throw std::runtime_error(std::string("de-skewing: ") + describe(fault));
   }
   moveToOrigin();
+  followTrack(motion);
   detector_->process(scan_, labels_);
+  motion_.learn(labels_.dynamic);
   last_labeled_ = stamp;
-  events_.labeled({waiting.cloud, waiting.layout, scan_, labels_, *detector_, motion.odom_frame, waiting.received,
-                   parsing_time_ + secondsSince(start)});
+  events_.labeled({waiting.cloud, waiting.layout, scan_, labels_, *detector_, motion.odom_frame, motion,
+                   waiting.received, parsing_time_ + secondsSince(start)});
   tellStrangeTimes(waiting);
+}
+
+/// Of a motion that is found in the clouds: what it says of itself.
+void Pipeline::followTrack(const ScanMotion& motion) {
+  if (!motion.tracked) return;
+  if (motion.tracked->status == TrackingStatus::kDegenerate) ++counts_.degenerate;
+  const bool is_another_track = motion.tracked->is_new_track && last_labeled_;
+  if (!is_another_track) return;
+  reset();
+  events_.forgotten("the ego motion was lost, and is found anew in the clouds: the grid is forgotten");
 }
 
 bool Pipeline::deskews() const { return config_.motion.deskew && config_.motion.source != OdometrySource::kNone; }

@@ -27,6 +27,7 @@ struct LabeledScan {
   const EchoLabels& labels;
   const Detector& detector;
   const std::string& odom_frame;
+  const ScanMotion& motion;
   std::chrono::steady_clock::time_point received;
   double processing_time;  ///< parsing, de-skewing and judging [s]
 };
@@ -38,6 +39,8 @@ struct PipelineEvents {
   std::function<void(OdometryRefusal, const std::string& text)> refused;  ///< once per refused odometry
   std::function<void(const std::string& text)> forgotten;                 ///< the grid is empty again, and why
   std::function<void(const std::string& text)> strange_times;             ///< once per cloud that cannot be de-skewed
+  /// Where the ego motion comes from, once odometry_source auto knows; may be left empty.
+  std::function<void(const std::string& text)> motion_chosen = nullptr;
 };
 
 struct PipelineCounts {
@@ -45,6 +48,7 @@ struct PipelineCounts {
   std::size_t odometry_in = 0;
   DropCounts dropped;
   OdometryRefusalCounts refused;
+  std::size_t degenerate = 0;  ///< labelled with an ego motion from the clouds that they leave open in part
 };
 
 /// Pairs clouds with motion by time, never by order of arrival, and has them judged in the order of their
@@ -81,6 +85,7 @@ class Pipeline {
   std::size_t waiting() const { return waiting_.size(); }
   const PipelineCounts& counts() const { return counts_; }
   const Detector& detector() const { return *detector_; }
+  const MotionSource& motion() const { return motion_; }
 
  private:
   struct WaitingCloud {
@@ -99,6 +104,7 @@ class Pipeline {
   void suspect(const nav_msgs::Odometry& odometry);
   void use(const nav_msgs::Odometry& odometry);
   void dropSuspect();
+  void followTrack(const ScanMotion& motion);
   void startAnew(const std::string& why);
   MotionAnswer motionOf(const WaitingCloud& waiting, bool settle);
   void label(const WaitingCloud& waiting, const ScanMotion& motion);

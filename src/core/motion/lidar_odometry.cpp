@@ -55,6 +55,7 @@ std::size_t LidarOdometry::memoryBytes() const {
 
 const TrackedScan& LidarOdometry::locate(double stamp, const std::vector<Eigen::Vector3f>& echoes) {
   keep();
+  echoes_ = echoes.size();
   select(echoes);
   if (has_track_) {
     follow(stamp);
@@ -238,12 +239,13 @@ void LidarOdometry::lose(const Eigen::Isometry3d& prediction, double stamp) {
   if (lost_ * step_time_ > options_.longest_prediction) step_.setIdentity();
 }
 
-void LidarOdometry::learn(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& dynamic) {
-  if (dynamic.size() != echoes.size()) throw std::invalid_argument("a label for each echo is needed");
-  to_keep_.clear();
-  for (const std::uint32_t i : for_map_) {
-    if (dynamic[i] == 0) to_keep_.push_back(echoes[i]);
+void LidarOdometry::learn(const std::vector<std::uint8_t>& dynamic) {
+  if (dynamic.size() != echoes_) throw std::invalid_argument("a label for each echo of the last scan is needed");
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < to_keep_.size(); ++i) {
+    if (dynamic[for_map_[i]] == 0) to_keep_[kept++] = to_keep_[i];
   }
+  to_keep_.resize(kept);
 }
 
 void LidarOdometry::keep() {

@@ -74,7 +74,7 @@ class LidarOdometry {
 
   /// What moves in the scan located last, 1 for each echo that does: the map is to hold what stands. Optional; without
   /// it the next scan finds all echoes in the map.
-  void learn(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& dynamic);
+  void learn(const std::vector<std::uint8_t>& dynamic);
 
   void reset();
   std::size_t memoryBytes() const;
@@ -109,6 +109,7 @@ class LidarOdometry {
   bool has_track_ = false;
   float nearest_ = 0.0F;  // [m]
   // Of the scan in hand.
+  std::size_t echoes_ = 0;
   std::vector<float> ranges_;
   std::vector<std::uint32_t> usable_, for_map_, picked_;
   std::vector<Eigen::Vector3f> source_, to_keep_;
