@@ -1,4 +1,4 @@
-// Things made of judged echoes, before a sensor that may move.
+// Objects made of judged echoes, before a sensor that may move.
 #pragma once
 
 #include <vector>

@@ -15,7 +15,7 @@ namespace donex {
 class ScanClock {
  public:
   /// `birth_window` [s]: places that had been seen free settle after it; others after half a second at
-  /// most: what appears in unknown space and stays is a thing that was there before.
+  /// most: what appears in unknown space and stays is an object that was there before.
   explicit ScanClock(double birth_window);
 
   /// Begins the next scan [s].

@@ -75,7 +75,7 @@ bool MotionTests::fitsElsewhere(const Trace& trace, const Segment& segment, doub
   Points present;
   visitSome(scan_, segment, kPresentPoints,
             [&](const Eigen::Vector3d& point) { present.in_odom[present.count++] = point; });
-  // From centre to centre, which another view of the same thing displaces, to the best fit.
+  // From centre to centre, which another view of the same object displaces, to the best fit.
   Eigen::Vector3d shift = segment.center() - trace.center;
   int fitting = 0;
   for (int round = 1; round <= kFitRounds; ++round) {

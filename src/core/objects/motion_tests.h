@@ -27,7 +27,7 @@ class MotionTests {
   FormerPlace lookBack(const Trace& trace) const;
 
   /// True where the segment fits the shape of the trace at another place, and is gone from the old one.
-  /// Slower things than lookBack() sees, and things behind fences, where careful sight knows nothing.
+  /// Slower objects than lookBack() sees, and objects behind fences, where careful sight knows nothing.
   bool hasMoved(const Trace& trace, const Segment& segment) const;
 
  private:

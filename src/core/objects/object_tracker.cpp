@@ -15,11 +15,11 @@ constexpr double kLost = 0.6;         // [s] unseen for longer: forgotten
 constexpr std::array<double, 3> kLookBack = {0.3, 0.6, 1.0};
 constexpr double kSmoothing = 0.3;  // share of the newest displacement in the velocity
 constexpr int kScansToBelieve = 2;
-constexpr double kMovesOn = 1.0;          // [s] after it was seen to move as one, a thing does so still
+constexpr double kMovesOn = 1.0;          // [s] after it was seen to move as one, an object does so still
 constexpr double kSurelyMoving = 5.0;     // [m/s] a hedge that comes into view step by step seems slower
 constexpr double kReleaseAfter = 0.3;     // [s] but its parts are released sooner
 constexpr double kForgetExtent = 0.9;     // of the former extent remains, a scan
-constexpr double kRim = 0.5;              // [m] around a moving thing
+constexpr double kRim = 0.5;              // [m] around a moving object
 constexpr double kSettledFragment = 0.2;  // share
 
 }  // namespace

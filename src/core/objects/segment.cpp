@@ -9,10 +9,10 @@ constexpr double kLongest = 25.0;     // [m]
 constexpr double kLong = 2.0;         // [m]
 constexpr double kLeastShare = 0.15;  // of all echoes that must be new
 constexpr double kAround = 0.2;       // [m]
-constexpr double kOtherView = 0.5;    // share of the extent that another view of the same thing may not show
-constexpr double kFrayed = 0.7;       // [m] and as much at its ends, where few echoes hit: that counts for small things
-constexpr double kThinAngle = 0.02;   // [rad]
-constexpr double kThinReach = 20.0;   // [m] farther away beams are too sparse to tell
+constexpr double kOtherView = 0.5;    // share of the extent that another view of the same object may not show
+constexpr double kFrayed = 0.7;      // [m] and as much at its ends, where few echoes hit: that counts for small objects
+constexpr double kThinAngle = 0.02;  // [rad]
+constexpr double kThinReach = 20.0;  // [m] farther away beams are too sparse to tell
 
 }  // namespace
 

@@ -8,7 +8,7 @@ namespace donex {
 void TraceHistory::begin(double stamp) {
   const auto first = std::find_if(sheets_.begin(), sheets_.end(),
                                   [&](const Sheet& sheet) { return sheet.stamp > stamp - look_back_; });
-  // A thing that was not seen in the scan before `first` may have left its last trace the longest gap earlier.
+  // An object that was not seen in the scan before `first` may have left its last trace the longest gap earlier.
   if (first != sheets_.begin()) forget(std::prev(first)->stamp - longest_gap_);
   Sheet next;
   if (!spares_.empty()) {

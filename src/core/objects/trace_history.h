@@ -1,4 +1,4 @@
-// Where the things of the last scans were.
+// Where the objects of the last scans were.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 namespace donex {
 
-/// Where some of a thing's echoes were, odometry frame [m]; a view of the history.
+/// Where some of an object's echoes were, odometry frame [m]; a view of the history.
 struct Trace {
   double stamp = 0.0;                                ///< [s]
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< of the thing
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< of the object
   const Eigen::Vector3d* first = nullptr;
   std::size_t points = 0;
 
@@ -31,10 +31,11 @@ void visitSome(const JudgedScan& scan, const Segment& segment, std::size_t at_mo
   }
 }
 
-/// A thing leaves one trace a scan, chained to the one before. A scan's traces lie together and are forgotten together.
+/// An object leaves one trace a scan, chained to the one before. A scan's traces lie together and are forgotten
+/// together.
 class TraceHistory {
  public:
-  /// Echoes of a thing that are kept, at most.
+  /// Echoes of an object that are kept, at most.
   static constexpr std::size_t kPoints = 48;
 
   struct Id {
@@ -42,17 +43,17 @@ class TraceHistory {
     std::uint32_t entry = 0;
   };
 
-  /// Traces are asked for up to `look_back` [s] before the present scan, of things that leave one every `longest_gap`
+  /// Traces are asked for up to `look_back` [s] before the present scan, of objects that leave one every `longest_gap`
   /// [s] or every scan.
   TraceHistory(double look_back, double longest_gap) : look_back_(look_back), longest_gap_(longest_gap) {}
 
   /// The next scan [s]: forgets what will not be asked for any more. Stamps grow.
   void begin(double stamp);
 
-  /// The segment's trace in the present scan; `before`: the same thing's last one.
+  /// The segment's trace in the present scan; `before`: the same object's last one.
   Id leave(const JudgedScan& scan, const Segment& segment, Id before);
 
-  /// True where the thing whose last trace is `latest` left one at `stamp` [s] or earlier; the last of these. Valid
+  /// True where the object whose last trace is `latest` left one at `stamp` [s] or earlier; the last of these. Valid
   /// until the next call of another kind.
   bool find(Id latest, double stamp, Trace& trace) const;
 

@@ -178,7 +178,7 @@ TEST(Clusters, OnesAboveTheOtherTouchVertically) {
 
 TEST(Clusters, TheSkirtHangsOnWhatStandsAboveItAndConnectsNothing) {
   Echoes echoes;
-  echoes.add(5.0F, 0.1F, 0.4F);  // two things,
+  echoes.add(5.0F, 0.1F, 0.4F);  // two objects,
   echoes.add(6.2F, 0.1F, 0.4F);
   for (int i = 0; i <= 8; ++i) echoes.add(5.0F + 0.15F * static_cast<float>(i), 0.1F, 0.2F, ClusterRole::kFollows);
   const std::vector<int> of = clustersOf(echoes, 20.0, kSettings);

@@ -11,7 +11,7 @@ namespace {
 
 using testing::JudgedScene;
 
-/// The trace of a thing.
+/// The trace of an object.
 struct Left {
   TraceHistory history{1.0, 0.6};
   TraceHistory::Id last;
@@ -23,7 +23,7 @@ struct Left {
   }
 };
 
-/// A scan, its sight and its first thing as a segment.
+/// A scan, its sight and its first object as a segment.
 struct Seen {
   explicit Seen(const JudgedScene& seen, std::size_t echoes) : things(seen) {
     history.add(things.scan(), things.judged.is_echo);

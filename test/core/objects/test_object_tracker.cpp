@@ -1,4 +1,4 @@
-// Things followed over time: which of them move, and who they are.
+// Objects followed over time: which of them move, and who they are.
 #include <algorithm>
 #include <array>
 
@@ -186,7 +186,7 @@ TEST(ObjectTracker, WhatSettlesStandsAtOnce) {
 }
 
 TEST(ObjectTracker, WhatASlowThingLeavesBehindAFenceTells) {
-  // Careful sight knows nothing behind a fence; the thing's own shape, found elsewhere, tells.
+  // Careful sight knows nothing behind a fence; the object's own shape, found elsewhere, tells.
   Followed followed;
   std::size_t moving = 0, person = 0;
   for (int k = 0; k < 20; ++k) {

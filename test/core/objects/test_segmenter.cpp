@@ -1,4 +1,4 @@
-// Which connected echoes are one thing, and which of them only stand close to it.
+// Which connected echoes are one object, and which of them only stand close to it.
 #include <algorithm>
 
 #include <gtest/gtest.h>

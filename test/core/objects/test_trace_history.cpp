@@ -1,4 +1,4 @@
-// Traces of things over time, against lists that are never forgotten.
+// Traces of objects over time, against lists that are never forgotten.
 #include <map>
 #include <random>
 
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLookBack = 1.0, kLongestGap = 0.6;  // [s]
 
-/// A thing of one echo, at x.
+/// An object of one echo, at x.
 Segment thing(const testing::JudgedScene& things, std::size_t echo) {
   Segment segment;
   segment.echoes = {static_cast<std::uint32_t>(echo)};
@@ -20,7 +20,7 @@ Segment thing(const testing::JudgedScene& things, std::size_t echo) {
   return segment;
 }
 
-/// All traces a thing ever left: stamp and place.
+/// All traces an object ever left: stamp and place.
 using Left = std::vector<std::pair<double, double>>;
 
 const std::pair<double, double>* lastUntil(const Left& left, double stamp) {
