@@ -10,6 +10,7 @@
 #include <tf2_msgs/TFMessage.h>
 
 #include "bag/bag_file.h"
+#include "io/number_text.h"
 #include "ros/cloud_fields.h"
 
 namespace donex {
@@ -70,8 +71,8 @@ void checkTimes(const SequenceReader& sequence, double odometry_rate) {
   constexpr double kEndOfTime = 4294967295.0;  // seconds are 32 bits in ROS
   constexpr double kMostMessages = 1e7;
   const double first = sequence.stamp(0), last = sequence.stamp(sequence.size() - 1);
-  const std::string times =
-      fmt::format("{}: the times run from {} to {} s", sequence.directory().string(), first, last);
+  const std::string times = fmt::format("{}: the times run from {} to {} s", sequence.directory().string(),
+                                        numberText(first), numberText(last));
   if (last + shiftFor(first) >= kEndOfTime) throw DataError(times + ", beyond what ROS can hold");
   if ((last - first) * odometry_rate > kMostMessages) throw DataError(times + ", too long for this rate of odometry");
 }

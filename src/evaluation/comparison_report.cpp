@@ -7,6 +7,7 @@
 
 #include "evaluation/comparison.h"
 #include "evaluation/report_page.h"
+#include "io/number_text.h"
 #include "io/sequence.h"
 #include "io/whole_file.h"
 
@@ -68,7 +69,8 @@ void visitGroups(const Evaluation& evaluation, Visit&& visit) {
   }
   for (std::size_t band = 0; band < evaluation.byRange().size(); ++band) {
     const double from = kRangeBand * static_cast<double>(band);
-    visit("range", fmt::format("{} to {} m", from, from + kRangeBand), evaluation.byRange()[band]);
+    visit("range", fmt::format("{} to {} m", numberText(from), numberText(from + kRangeBand)),
+          evaluation.byRange()[band]);
   }
   for (std::size_t band = 0; band < evaluation.bySpeed().size(); ++band) {
     visit("speed", speedBandName(band), evaluation.bySpeed()[band]);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "evaluation/evaluation.h"
+#include "io/number_text.h"
 #include "io/sequence.h"
 
 namespace donex {
@@ -136,7 +137,8 @@ std::string rangeTable(const std::vector<NamedEvaluation>& columns) {
           fmt::format("{} / {} / {}", number(counts.iou()), number(counts.precision()), number(counts.recall())));
     }
     const double from = kRangeBand * static_cast<double>(band);
-    cells.insert(cells.begin(), {fmt::format("{} to {} m", from, from + kRangeBand), fmt::format("{}", moving)});
+    cells.insert(cells.begin(), {fmt::format("{} to {} m", numberText(from), numberText(from + kRangeBand)),
+                                 fmt::format("{}", moving)});
     rows.push_back(cells);
   }
   rows.front()[1] = "moving";
@@ -164,9 +166,9 @@ std::string speedTable(const std::vector<NamedEvaluation>& columns) {
 }  // namespace
 
 std::string speedBandName(std::size_t band) {
-  if (band == 0) return fmt::format("below {} m/s", kSpeedBandEnds.front());
-  if (band == kSpeedBandEnds.size()) return fmt::format("{} m/s and more", kSpeedBandEnds.back());
-  return fmt::format("{} to {} m/s", kSpeedBandEnds[band - 1], kSpeedBandEnds[band]);
+  if (band == 0) return fmt::format("below {} m/s", numberText(kSpeedBandEnds.front()));
+  if (band == kSpeedBandEnds.size()) return fmt::format("{} m/s and more", numberText(kSpeedBandEnds.back()));
+  return fmt::format("{} to {} m/s", numberText(kSpeedBandEnds[band - 1]), numberText(kSpeedBandEnds[band]));
 }
 
 std::string className(std::uint32_t label) {

@@ -19,9 +19,19 @@
 namespace donex {
 namespace {
 
+/// A range that may be switched off with 0.
+void requireRangeOrNone(const char* name, double value, double low, double high, std::vector<std::string>& faults) {
+  const bool is_none = value == 0.0;
+  const bool is_inside = value >= low && value <= high;  // false for NaN
+  if (!is_none && !is_inside) {
+    faults.push_back(fmt::format("{} is {:g}, must be 0 or between {:g} and {:g} [m]", name, value, low, high));
+  }
+}
+
 void requireRange(const char* name, double value, double low, double high, std::vector<std::string>& faults) {
   const bool is_inside = value >= low && value <= high;  // false for NaN
-  if (!is_inside) faults.push_back(fmt::format("{} is {}, must be between {} and {} [m]", name, value, low, high));
+  if (!is_inside)
+    faults.push_back(fmt::format("{} is {:g}, must be between {:g} and {:g} [m]", name, value, low, high));
 }
 
 }  // namespace
@@ -33,10 +43,12 @@ class OctomapNodelet : public nodelet::Nodelet {
     StrictParameters parameters(getPrivateNodeHandle());
     parameters.read("resolution", options.resolution);
     parameters.read("max_range", options.max_range);
+    parameters.read("map_range", options.map_range);
     parameters.read("fixed_frame", fixed_frame_);
     std::vector<std::string> found = parameters.faults();
     requireRange("resolution", options.resolution, 0.01, 10.0, found);
     requireRange("max_range", options.max_range, 1.0, 1000.0, found);
+    requireRangeOrNone("map_range", options.map_range, 5.0, 10000.0, found);
     const std::string faults = joined(found);
     if (!faults.empty()) {
       NODELET_FATAL("%s", faults.c_str());
@@ -45,7 +57,8 @@ class OctomapNodelet : public nodelet::Nodelet {
     map_ = std::make_unique<OctomapBuilder>(options);
     listener_ = std::make_unique<tf2_ros::TransformListener>(tf_, getNodeHandle());
     publisher_ = getPrivateNodeHandle().advertise<sensor_msgs::PointCloud2>("cells", 1, true);
-    subscriber_ = getNodeHandle().subscribe("points", 10, &OctomapNodelet::onCloud, this);
+    // The newest alone: where the map cannot keep up with the sensor, clouds are left out, they do not pile up.
+    subscriber_ = getNodeHandle().subscribe("points", 1, &OctomapNodelet::onCloud, this);
     timer_ = getNodeHandle().createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { publish(); });
   }
 

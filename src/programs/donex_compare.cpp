@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "evaluation/comparison.h"
+#include "io/number_text.h"
 #include "io/whole_file.h"
 #include "programs/program.h"
 
@@ -148,7 +149,7 @@ void fillTable1(Comparison& comparison, const std::string& directory, const std:
     Config config = paperOf(method);
     config.voxel_size = voxel_size;
     config.region = {0.0, 75.0, -25.0, 25.0, -4.0, 6.0};
-    const fs::path place = fs::path(out) / "table_1" / fmt::format("{}_{}", nameOf(method), voxel_size);
+    const fs::path place = fs::path(out) / "table_1" / fmt::format("{}_{}", nameOf(method), numberText(voxel_size));
     inOwnProcess(place.filename().string(), [&] { runContender(sequence, scans, config, place, false); });
     return readRunFigures(place)->median_cpu_time;
   };

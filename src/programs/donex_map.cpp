@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "evaluation/map_score.h"
+#include "io/number_text.h"
 #include "io/sequence.h"
 #include "io/static_map.h"
 #include "programs/program.h"
@@ -57,10 +58,11 @@ class Mapper {
     const std::size_t tiles = map_.tilesPutAway();
     const std::size_t points = map_.write();
     fmt::print("{} scans, {} of {} echoes kept as static; {} points of {} m in {}\n", scans_, kept_, echoes_, points,
-               arguments.map_voxel, arguments.out);
+               numberText(arguments.map_voxel), arguments.out);
     const Eigen::Vector3d origin = map_.origin();
     if (!origin.isZero(0.0)) {
-      fmt::print("coordinates begin at {} {} {} of the odometry frame\n", origin.x(), origin.y(), origin.z());
+      fmt::print("coordinates begin at {} {} {} of the odometry frame\n", numberText(origin.x()),
+                 numberText(origin.y()), numberText(origin.z()));
     }
     fmt::print("peak memory: {}; {} tiles were put away on the way\n", megabytes(peakMemory()), tiles);
     if (!arguments.compare) return;

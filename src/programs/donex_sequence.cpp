@@ -8,6 +8,7 @@
 #include "donex/memory_bound.h"
 #include "evaluation/comparison.h"
 #include "evaluation/drift.h"
+#include "io/number_text.h"
 #include "io/sequence.h"
 #include "io/whole_file.h"
 #include "programs/program.h"
@@ -58,7 +59,7 @@ void report(const Run& run, const Config& config, const DriveRun& drive, bool ha
   double seconds = 0.0;
   for (const double time : drive.times()) seconds += time;
   fmt::print("{} scans, {} echoes, {} dynamic; {}, {} m\n", drive.times().size(), run.echoes, run.dynamic,
-             nameOf(config.method), config.voxel_size);
+             nameOf(config.method), numberText(config.voxel_size));
   fmt::print("time a scan: median {:.2f} ms, p99 {:.2f} ms (CPU: median {:.2f} ms)\n",
              1e3 * quantile(drive.times(), 0.5), 1e3 * quantile(drive.times(), 0.99),
              1e3 * quantile(drive.cpuTimes(), 0.5));

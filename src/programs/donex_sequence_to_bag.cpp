@@ -5,6 +5,7 @@
 
 #include "bag/bag_file.h"
 #include "bag/sequence_bag.h"
+#include "io/number_text.h"
 #include "programs/program.h"
 
 namespace donex {
@@ -24,7 +25,8 @@ void run(const CLI::App& app, Arguments& arguments) {
   progress.reset();
   fmt::print("{} clouds on /points, {} odometry messages on /odom, tf odom <- base_link <- velodyne\n", summary.clouds,
              summary.odometry);
-  if (summary.shift != 0.0) fmt::print("all times moved by {} s: a bag knows no time before 0\n", summary.shift);
+  if (summary.shift != 0.0)
+    fmt::print("all times moved by {} s: a bag knows no time before 0\n", numberText(summary.shift));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "donex/motion/ego_motion.h"
+#include "io/number_text.h"
 #include "io/sequence.h"
 #include "programs/program.h"
 #include "simulation/simulator.h"
@@ -37,7 +38,7 @@ struct OptionAdder {
   template <class Number>
   void operator()(const OptionInfo& info, Number& value, Number, Number) {
     const std::string unit = *info.unit == '\0' ? "" : fmt::format(" [{}]", info.unit);
-    app.add_option(flagOf(info), value, fmt::format("{}{}; by default {}", info.meaning, unit, value));
+    app.add_option(flagOf(info), value, fmt::format("{}{}; by default {}", info.meaning, unit, numberText(value)));
   }
   void operator()(const OptionInfo& info, std::string& value, const std::vector<std::string>& names) {
     app.add_option(flagOf(info), value,
@@ -105,7 +106,7 @@ class SequenceScans {
  private:
   Eigen::Isometry3d reported(double stamp) const {
     const auto pose = motion_.poseAt(stamp);
-    if (!pose) throw DataError(fmt::format("no pose at {} s: {}", stamp, describe(pose.fault())));
+    if (!pose) throw DataError(fmt::format("no pose at {} s: {}", numberText(stamp), describe(pose.fault())));
     return *pose;
   }
 
@@ -145,7 +146,8 @@ void writeBag(const CLI::App& app, Arguments& arguments) {
   const double least = leastStart(arguments.options.odometry);
   const bool is_asked_for_less = app.count("--start-stamp") > 0 && start < least;
   if (is_asked_for_less) {
-    warn(app, fmt::format("start_stamp is {} s, not {} s: a bag knows no time before 0", least, start));
+    warn(app, fmt::format("start_stamp is {} s, not {} s: a bag knows no time before 0", numberText(least),
+                          numberText(start)));
   }
   start = std::max(start, least);
   Simulator simulator(arguments.scene, arguments.options);

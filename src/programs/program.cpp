@@ -11,6 +11,7 @@
 
 #include "core/timing.h"
 #include "io/config_file.h"
+#include "io/number_text.h"
 
 namespace donex {
 namespace {
@@ -118,7 +119,7 @@ std::size_t peakMemory() {
 
 RunFigures figuresOf(const std::vector<double>& times, const Config& config) {
   RunFigures figures;
-  figures.method = fmt::format("{}, {} m", nameOf(config.method), config.voxel_size);
+  figures.method = fmt::format("{}, {} m", nameOf(config.method), numberText(config.voxel_size));
   figures.scans = times.size();
   figures.median_time = quantile(times, 0.5);
   figures.p99_time = quantile(times, 0.99);

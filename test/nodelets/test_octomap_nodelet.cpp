@@ -28,6 +28,8 @@ TEST_F(OctomapNodeletTest, ParametersOutOfRangeAreRefused) {
     EXPECT_FALSE(loadsWith("resolution", value)) << value;
   }
   for (const double value : {0.0, -40.0, 1e6}) EXPECT_FALSE(loadsWith("max_range", value)) << value;
+  for (const double value : {-1.0, 0.5, static_cast<double>(NAN)}) EXPECT_FALSE(loadsWith("map_range", value)) << value;
+  EXPECT_TRUE(loadsWith("map_range", 0.0)) << "nothing is forgotten";
   EXPECT_TRUE(loadsWith("resolution", 0.2)) << "then refusing says little";
   EXPECT_TRUE(loadsWith("max_range", 100.0));
 }

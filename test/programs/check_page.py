@@ -34,7 +34,7 @@ def browse(page, *options):
             [browser, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars",
              "--host-resolver-rules=MAP * ~NOTFOUND", "--enable-logging=stderr", f"--user-data-dir={profile}",
              "--virtual-time-budget=20000", *options, page.resolve().as_uri()],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=120, check=True)
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=600, check=True)
 
 
 def main():

@@ -21,7 +21,7 @@ def program_of(name):
 
 
 def options_of(program):
-    run = subprocess.run([str(program), "--help"], stdout=subprocess.PIPE, text=True, timeout=60, check=True)
+    run = subprocess.run([str(program), "--help"], stdout=subprocess.PIPE, text=True, timeout=600, check=True)
     return set(re.findall(r"--[a-z0-9-]+", run.stdout))
 
 

@@ -24,6 +24,7 @@ class FaultsTest : public ManagerTest {
   static constexpr double kPeriod = 0.1;       // of the scans [s]
   static constexpr std::size_t kGood = 5;      // scans before the fault
   static constexpr std::size_t kPatience = 2;  // scans until it is as before
+  static constexpr double kDropped = 10.0;     // a scan that is not labelled by then has been dropped [s]
 
   /// Returns when this process's clock, and so the classifier's, shows it.
   void setClock(double now) {
@@ -59,7 +60,7 @@ class FaultsTest : public ManagerTest {
     for (std::size_t scan = 0; scan < kPatience; ++scan) {
       advance();
       send(now_);
-      const bool is_labeled = waitFor([&] { return hasLabeled(now_); }, 3.0);
+      const bool is_labeled = waitFor([&] { return hasLabeled(now_); }, kDropped);
       if (is_labeled) return driveWell(3);
     }
     ADD_FAILURE() << "nothing is labelled two scans after the fault: " << status_;

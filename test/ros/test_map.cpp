@@ -64,7 +64,7 @@ TEST(Map, CloudsAreHandedOverWithinTheManager) {
   sensor_msgs::PointCloud2ConstPtr cells;
   const boost::function<void(const sensor_msgs::PointCloud2ConstPtr&)> take = [&](const auto& cloud) { cells = cloud; };
   const auto subscriber = nh.subscribe<sensor_msgs::PointCloud2>("/static_map/cells", 1, take);
-  ASSERT_TRUE(waitFor([&] { return cells && cells->width > 100; }, 90.0)) << "there is no map";
+  ASSERT_TRUE(waitFor([&] { return cells && cells->width > 100; })) << "there is no map";
   // LiDAR to classifier, classifier to filter, filter to octree.
   const std::vector<std::string> once{"INTRAPROCESS"};
   for (const std::string topic : {"/points", "/donex/static_points", "/thin_static_points/output"}) {
@@ -175,9 +175,9 @@ TEST(Map, WhatMovesIsNotInIt) {
   constexpr std::size_t kScans = 80;
   LiveDrive drive;
   const ToldMap of_static("/static_map/cells"), of_all("/map_of_all/cells");
-  ASSERT_TRUE(waitFor([&] { return drive.scans() >= kScans; }, 60.0)) << drive.scans() << " scans";
+  ASSERT_TRUE(waitFor([&] { return drive.scans() >= kScans; })) << drive.scans() << " scans";
   const ros::Time end = drive.newest();
-  ASSERT_TRUE(waitFor([&] { return of_static.stamp() >= end && of_all.stamp() >= end; }, 30.0));
+  ASSERT_TRUE(waitFor([&] { return of_static.stamp() >= end && of_all.stamp() >= end; }));
   const std::vector<Voxel> moved_through = drive.movedThrough();
   const std::size_t in_static = of_static.countOf(moved_through), in_all = of_all.countOf(moved_through);
   RecordProperty("voxels_moved_through", std::to_string(moved_through.size()));

@@ -1,10 +1,18 @@
 // What moves hardly gets into a map of static echoes, and stays in one of all echoes.
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <fstream>
 #include <iostream>
+#include <limits>
 #include <set>
+#include <vector>
 
 #include <gtest/gtest.h>
+#include <sensor_msgs/point_cloud2_iterator.h>
+#include <unistd.h>
 
+#include "ros/explanation_clouds.h"
 #include "ros/octomap_builder.h"
 #include "ros/pipeline_rig.h"
 #include "simulated_lidar/simulation_messages.h"
@@ -14,8 +22,8 @@ namespace donex {
 namespace {
 
 constexpr int kScans = 22;
-constexpr int kWarmUp = 10;                            // scans
-constexpr OctomapBuilder::Options kCoarse{0.3, 20.0};  // [m]
+constexpr int kWarmUp = 10;                                 // scans
+constexpr OctomapBuilder::Options kCoarse{0.3, 20.0, 0.0};  // [m]
 constexpr std::uint32_t kFirstMoving = 252, kClass = 0xFFFF;
 
 /// A sensor at rest at an intersection, every scan of it in two maps.
@@ -93,6 +101,68 @@ TEST(OctomapBuilder, MovingThingsHardlyGetIn) {
   EXPECT_GT(of_all, 40U) << "a map of all echoes holds who came by";
   EXPECT_LT(10 * of_static, of_all);
   EXPECT_GT(maps.of_static.occupiedCells({})->width, 1000U) << "the street is there";
+}
+
+/// A street without an end, as a sensor sees it: walls on both sides, ground, a post every 8 m.
+sensor_msgs::PointCloud2Ptr street(double at) {
+  constexpr float kSide = 6.0F, kHeight = 3.0F, kAhead = 20.0F, kStep = 0.4F;
+  std::vector<Eigen::Vector3f> echoes;
+  for (float x = -kAhead; x < kAhead; x += kStep) {
+    for (float z = -1.5F; z < kHeight; z += kStep) {
+      echoes.emplace_back(x, -kSide, z);
+      echoes.emplace_back(x, kSide, z);
+    }
+    for (float y = -kSide; y < kSide; y += 2.0F * kStep) echoes.emplace_back(x, y, -1.5F);
+    const double post = std::fmod(at + static_cast<double>(x), 8.0);
+    if (std::abs(post) < static_cast<double>(kStep)) echoes.emplace_back(x, 3.0F, 0.0F);
+  }
+  return cellCloud(echoes, {});
+}
+
+/// Memory that the process has resident [bytes].
+double residentMemory() {
+  std::ifstream statm("/proc/self/statm");
+  double all = 0.0, resident = 0.0;
+  statm >> all >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+struct Growth {
+  std::size_t nodes_half_way, nodes;
+  double bytes_half_way, bytes;
+};
+
+/// Drives along the street, a cloud every 2 m.
+Growth driveOn(OctomapBuilder& map, int clouds) {
+  Growth growth{};
+  constexpr double kStep = 2.0;  // [m]
+  for (int i = 0; i < clouds; ++i) {
+    const double at = kStep * i;
+    EXPECT_TRUE(map.add(*street(at), Eigen::Isometry3d(Eigen::Translation3d(at, 0.3, 1.8))));
+    if (i == clouds / 2) growth.nodes_half_way = map.nodes(), growth.bytes_half_way = residentMemory();
+  }
+  growth.nodes = map.nodes(), growth.bytes = residentMemory();
+  return growth;
+}
+
+TEST(OctomapBuilder, MemoryStaysFlatOnALongDrive) {
+  constexpr int kClouds = 240;
+  OctomapBuilder map({0.3, 20.0, 40.0});
+  const Growth bounded = driveOn(map, kClouds);
+  std::cout << "nodes " << bounded.nodes_half_way << " half-way, " << bounded.nodes << " in the end; resident memory "
+            << bounded.bytes_half_way / 1e6 << " MB, " << bounded.bytes / 1e6 << " MB\n";
+  EXPECT_LT(static_cast<double>(bounded.nodes), 1.05 * static_cast<double>(bounded.nodes_half_way));
+  EXPECT_LT(bounded.bytes, 1.05 * bounded.bytes_half_way);
+  const double end = 2.0 * (kClouds - 1);  // [m]
+  const auto cells = map.occupiedCells({});
+  float nearest = std::numeric_limits<float>::infinity();
+  for (sensor_msgs::PointCloud2ConstIterator<float> x(*cells, "x"); x != x.end(); ++x) nearest = std::min(nearest, *x);
+  EXPECT_GT(static_cast<double>(nearest), end - 40.0 - 2.0 * 4.8) << "a block of 4.8 m, and a block's way";
+  EXPECT_LT(static_cast<double>(nearest), end - 30.0) << "what is near is kept";
+  OctomapBuilder all({0.3, 20.0, 0.0});
+  const Growth unbounded = driveOn(all, kClouds / 2);
+  EXPECT_GT(static_cast<double>(unbounded.nodes), 1.5 * static_cast<double>(unbounded.nodes_half_way))
+      << "then the bound says little";
 }
 
 TEST(OctomapBuilder, UnreadableCloudsAreRefused) {
