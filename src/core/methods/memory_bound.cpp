@@ -3,9 +3,10 @@
 #include <cstdint>
 
 #include "core/grid/grid_2d.h"
-#include "core/grid/grid_3d.h"
 #include "core/grid/grid_window.h"
+#include "core/grid/voxel_memory.h"
 #include "core/methods/detectors.h"
+#include "core/sight/ray_index.h"
 
 namespace donex {
 namespace {
@@ -21,7 +22,8 @@ double comparisonBytes(const Config& config) {
 double paperBytes(const Config& config, double echoes) {
   const Eigen::Vector3d extent = GridWindow::extentOf(config);
   if (config.method == Method::kDonex2d) return Grid2d::bytesFor(extent.head<2>().prod(), echoes, config.threads);
-  return Grid3d::bytesFor((extent / GridWindow::kBrick).prod(), echoes, config.threads);
+  return VoxelMemory::bytesFor((extent / GridWindow::kBrick).prod(), echoes, config.threads) +
+         RayIndex::bytesFor(echoes, config.threads);
 }
 
 }  // namespace

@@ -4,7 +4,8 @@
 #include "core/grid/grid_3d.h"
 #include "core/methods/detectors.h"
 #include "core/methods/stream_guard.h"
-#include "core/methods/z_buffer_grid.h"
+#include "core/sight/ray_index.h"
+#include "core/sight/z_buffer.h"
 
 namespace donex {
 namespace {
@@ -22,7 +23,10 @@ std::vector<Index3> hitVoxels(const GridWindow& window, const Scan& scan) {
 }
 
 std::vector<Index3> rememberedBy(const Grid2d&) { return {}; }
-std::vector<Index3> rememberedBy(const Grid3d& grid) { return grid.remembered(); }
+template <class SeeThrough>
+std::vector<Index3> rememberedBy(const Grid3d<SeeThrough>& grid) {
+  return grid.remembered();
+}
 
 /// What both grids share: the stream's order, and that nothing is new in the first scan.
 template <class Grid>
@@ -113,10 +117,10 @@ class PaperDetector : public Detector {
 }  // namespace
 
 std::unique_ptr<Detector> makePaperDetector3d(const Config& config) {
-  return std::make_unique<PaperDetector<Grid3d>>(config);
+  return std::make_unique<PaperDetector<Grid3d<RayIndex>>>(config);
 }
 std::unique_ptr<Detector> makeZBufferDetector(const Config& config) {
-  return std::make_unique<PaperDetector<ZBufferGrid>>(config);
+  return std::make_unique<PaperDetector<Grid3d<ZBuffer>>>(config);
 }
 std::unique_ptr<Detector> makePaperDetector2d(const Config& config) {
   return std::make_unique<PaperDetector<Grid2d>>(config);

@@ -19,6 +19,8 @@ namespace donex {
 /// the margin are put to LineOfSight. So every answer is that of the traversal.
 class RayIndex {
  public:
+  static constexpr bool kParallel = true;
+
   /// Begins a scan: where it lies, and its echoes in the sensor's frame, which must stay until the last question. Its
   /// blocks come in so many parts (firstBlockOf).
   void begin(const Placement& placement, const std::vector<Eigen::Vector3f>& echoes, std::size_t parts);

@@ -3,6 +3,7 @@
 
 #include "core/grid/grid_2d.h"
 #include "core/grid/grid_3d.h"
+#include "core/sight/ray_index.h"
 #include "donex/detector.h"
 #include "support/oracle.h"
 #include "support/random_scans.h"
@@ -41,7 +42,7 @@ std::vector<Case> cases() {
 constexpr int kScans = 25;
 constexpr int kEchoes = 600;  // three blocks: one per thread at most
 
-void expectSameMemory(const Grid3d& grid, const oracle::Donex3d& oracle) {
+void expectSameMemory(const Grid3d<RayIndex>& grid, const oracle::Donex3d& oracle) {
   oracle::Voxels voxels;
   for (const Index3& v : grid.remembered()) voxels.insert(oracle::absolute(v, grid.window()));
   ASSERT_EQ(voxels, oracle.memory());
@@ -104,7 +105,7 @@ class AgainstOracle : public ::testing::TestWithParam<Case> {
   static unsigned seed() { return GetParam().seed; }
 };
 
-TEST_P(AgainstOracle, Grid3d) { compareGrid<Grid3d, oracle::Donex3d>(config(Method::kDonex3d), seed()); }
+TEST_P(AgainstOracle, Grid3d) { compareGrid<Grid3d<RayIndex>, oracle::Donex3d>(config(Method::kDonex3d), seed()); }
 
 TEST_P(AgainstOracle, Detector3d) { compareDetector<oracle::Donex3d>(config(Method::kDonex3d), seed() + 1000); }
 

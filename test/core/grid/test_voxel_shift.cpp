@@ -3,6 +3,7 @@
 
 #include "core/grid/grid_2d.h"
 #include "core/grid/grid_3d.h"
+#include "core/sight/ray_index.h"
 #include "donex/detector.h"
 
 namespace donex {
@@ -53,7 +54,7 @@ void takeAndMoveOn(Memory& memory, const Scan& scan) {
 class VoxelShift : public ::testing::TestWithParam<Compensation> {};
 
 TEST_P(VoxelShift, KeepsContentsWithinOneVoxelIn3d) {
-  Grid3d memory(grid(Method::kDonex3d, GetParam()));
+  Grid3d<RayIndex> memory(grid(Method::kDonex3d, GetParam()));
   const Scan scan = landmarks();
   takeAndMoveOn(memory, scan);
   const auto voxels = memory.remembered();
@@ -93,7 +94,7 @@ TEST_P(VoxelShift, KeepsRangesWithinOneVoxelIn2d) {
 }
 
 TEST_P(VoxelShift, ForgetsWhatLeavesTheWindow) {
-  Grid3d memory(grid(Method::kDonex3d, GetParam()));
+  Grid3d<RayIndex> memory(grid(Method::kDonex3d, GetParam()));
   EchoLabels labels;
   memory.shift(Eigen::Isometry3d::Identity());
   memory.take(landmarks(), labels);

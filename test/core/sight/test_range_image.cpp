@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/methods/z_buffer_grid.h"
+#include "core/sight/z_buffer.h"
 #include "core/sight/range_image.h"
 #include "donex/detector.h"
 

@@ -1,4 +1,4 @@
-#include "core/grid/grid_3d.h"
+#include "core/grid/voxel_memory.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@ std::uint64_t maskOf(std::uint32_t bit) { return std::uint64_t{1} << bit; }
 
 }  // namespace
 
-Grid3d::Grid3d(const Config& config)
+VoxelMemory::VoxelMemory(const Config& config)
     : window_(config),
       layout_(window_.extent()),
       bricks_(layout_.slots() + 1),
@@ -28,7 +28,7 @@ Grid3d::Grid3d(const Config& config)
   layout_.scrollTo(window_.minIndex());
 }
 
-void Grid3d::shift(const Eigen::Isometry3d& odom_from_base) {
+void VoxelMemory::shift(const Eigen::Isometry3d& odom_from_base) {
   if (window_.compensation() == Compensation::kScroll) {
     scroll(odom_from_base);
   } else {
@@ -36,7 +36,7 @@ void Grid3d::shift(const Eigen::Isometry3d& odom_from_base) {
   }
 }
 
-void Grid3d::scroll(const Eigen::Isometry3d& odom_from_base) {
+void VoxelMemory::scroll(const Eigen::Isometry3d& odom_from_base) {
   const Index3 before = window_.minIndex();
   window_.moveTo(odom_from_base);
   if (window_.minIndex() == before) return;
@@ -49,7 +49,7 @@ void Grid3d::scroll(const Eigen::Isometry3d& odom_from_base) {
   layout_.scrollTo(window_.minIndex());
 }
 
-void Grid3d::resample(const Eigen::Isometry3d& odom_from_base) {
+void VoxelMemory::resample(const Eigen::Isometry3d& odom_from_base) {
   window_.moveTo(odom_from_base);
   const Eigen::Isometry3d grid_from_odom = window_.odomFromGrid().inverse();
   clearBricks();
@@ -69,27 +69,18 @@ void Grid3d::resample(const Eigen::Isometry3d& odom_from_base) {
 }
 
 /// The brick of a voxel of the window, listed as used.
-Grid3d::Brick& Grid3d::brickAt(std::uint32_t slot, const Index3& in_window) {
+VoxelMemory::Brick& VoxelMemory::brickAt(std::uint32_t slot, const Index3& in_window) {
   Brick& brick = bricks_[slot];
   const bool is_empty = (brick.remembered | brick.hit) == 0;
   if (is_empty) used_.push_back(usedAt(slot, in_window));
   return brick;
 }
 
-Grid3d::Used Grid3d::usedAt(std::uint32_t slot, const Index3& in_window) const {
+VoxelMemory::Used VoxelMemory::usedAt(std::uint32_t slot, const Index3& in_window) const {
   return {slot, (in_window + window_.minIndex()).unaryExpr([](int i) { return i & ~3; })};
 }
 
-void Grid3d::take(const Scan& scan, EchoLabels& labels) {
-  const Placement placement = window_.placementOf(scan);
-  rays_.begin(placement, scan.echoes, parts_.size());
-  hit(scan, placement, labels,
-      [&](std::size_t part, std::size_t first, const EchoBlock& block) { rays_.add(part, first, block); });
-  rays_.finish(workers_);
-  remember([&](std::uint64_t candidates, const Index3& corner) { return rays_.seenThrough(candidates, corner); });
-}
-
-void Grid3d::hit(std::size_t part, std::size_t first, const EchoBlock& block, EchoLabels& labels) {
+void VoxelMemory::hit(std::size_t part, std::size_t first, const EchoBlock& block, EchoLabels& labels) {
   BlockSlots at;
   layout_.locate(block, at);
   const auto in_first_part = [&](int i) -> std::uint64_t& {
@@ -108,8 +99,8 @@ void Grid3d::hit(std::size_t part, std::size_t first, const EchoBlock& block, Ec
 
 /// `hit_of(i)`: the part's own hits in the brick of the block's entry i.
 template <class HitOf>
-void Grid3d::hit(Part& part, std::size_t first, const EchoBlock& block, const BlockSlots& at, EchoLabels& labels,
-                 HitOf&& hit_of) {
+void VoxelMemory::hit(Part& part, std::size_t first, const EchoBlock& block, const BlockSlots& at, EchoLabels& labels,
+                      HitOf&& hit_of) {
   const bool keeps_order = window_.compensation() == Compensation::kResample;
   std::uint8_t* dynamic = labels.dynamic.data() + first;
   std::array<int, EchoBlock::kSize + 1> new_echoes;  // not set: a block's worth of it is written each time
@@ -129,12 +120,12 @@ void Grid3d::hit(Part& part, std::size_t first, const EchoBlock& block, const Bl
   part.echoes.add(first, block, new_echoes.data(), new_count);
 }
 
-void Grid3d::Part::begin(std::size_t most_echoes) {
+void VoxelMemory::Part::begin(std::size_t most_echoes) {
   echoes.begin(most_echoes);
   hit_voxels.clear();
 }
 
-void Grid3d::takeOver(Part& part) {
+void VoxelMemory::takeOver(Part& part) {
   std::vector<Index3>& in_order = parts_.front().hit_voxels;
   for (const Index3& voxel : part.hit_voxels) {
     const BrickBit at = layout_.locate(voxel);
@@ -155,14 +146,14 @@ void Grid3d::takeOver(Part& part) {
 }
 
 /// A hit voxel starts anew from its centre; one in the shadow keeps the residual it carries.
-void Grid3d::forgetHitContents() {
+void VoxelMemory::forgetHitContents() {
   const auto is_hit = [&](const Content& content) {
     return (bricks_[content.at.slot].hit & maskOf(content.at.bit)) != 0;
   };
   contents_.erase(std::remove_if(contents_.begin(), contents_.end(), is_hit), contents_.end());
 }
 
-void Grid3d::rememberContents() {
+void VoxelMemory::rememberContents() {
   const auto is_forgotten = [&](const Content& content) {
     return (bricks_[content.at.slot].remembered & maskOf(content.at.bit)) == 0;
   };
@@ -172,19 +163,18 @@ void Grid3d::rememberContents() {
   }
 }
 
-void Grid3d::clearBricks() {
+void VoxelMemory::clearBricks() {
   for (const Used& used : used_) bricks_[used.slot] = Brick{};
   used_.clear();
 }
 
-void Grid3d::reset() {
+void VoxelMemory::reset() {
   clearBricks();
-  rays_.reset();
   contents_.clear();
   for (Part& part : parts_) part.echoes.clear();
 }
 
-std::vector<Index3> Grid3d::remembered() const {
+std::vector<Index3> VoxelMemory::remembered() const {
   std::vector<Index3> voxels;
   for (const Used& used : used_) {
     for (std::uint64_t word = bricks_[used.slot].remembered; word != 0; word &= word - 1) {
@@ -194,16 +184,16 @@ std::vector<Index3> Grid3d::remembered() const {
   return voxels;
 }
 
-double Grid3d::bytesFor(double slots, double echoes, int threads) {
+double VoxelMemory::bytesFor(double slots, double echoes, int threads) {
   constexpr double kUsedASlot = static_cast<double>(sizeof(Used)) / kSlotsAUsedBrick;
   const double more_parts = threads - 1;
   return slots * (sizeof(Brick) + kUsedASlot + more_parts * (sizeof(std::uint64_t) + kUsedASlot)) +
-         RayIndex::bytesFor(echoes, threads) + TakenEchoes::bytesFor(echoes);
+         TakenEchoes::bytesFor(echoes);
 }
 
-std::size_t Grid3d::memoryBytes() const {
-  std::size_t bytes = bricks_.capacity() * sizeof(Brick) + used_.capacity() * sizeof(Used) + rays_.memoryBytes() +
-                      contents_.capacity() * sizeof(Content);
+std::size_t VoxelMemory::memoryBytes() const {
+  std::size_t bytes =
+      bricks_.capacity() * sizeof(Brick) + used_.capacity() * sizeof(Used) + contents_.capacity() * sizeof(Content);
   for (const Part& part : parts_) {
     bytes += part.echoes.memoryBytes() + part.hit_voxels.capacity() * sizeof(Index3) +
              part.hit.capacity() * sizeof(std::uint64_t) + part.touched.capacity() * sizeof(Used);
