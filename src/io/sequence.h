@@ -79,9 +79,9 @@ class SequenceReader {
 /// Writes a sequence, scan after scan. poses.txt holds the sensor's own poses: no calib.txt.
 class SequenceWriter {
  public:
-  /// Creates the directories. Throws DataError when parts of a sequence are there already, a calib.txt included, or
-  /// nothing can be written.
-  explicit SequenceWriter(std::filesystem::path directory);
+  /// Creates the directories. Throws DataError when nothing can be written or parts of a sequence are there already, a
+  /// calib.txt included; with `overwrite` those go, and what else lies beside them stays.
+  explicit SequenceWriter(std::filesystem::path directory, bool overwrite = false);
 
   /// Throws DataError when the stamp is not later than the last or a file cannot be written,
   /// std::invalid_argument when intensities or labels are not one per echo.

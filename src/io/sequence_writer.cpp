@@ -35,17 +35,33 @@ void requireNoSequence(const fs::path& directory) {
   for (const char* name : {"velodyne", "labels"}) {
     const fs::path folder = directory / name;
     const bool is_taken = fs::is_directory(folder) && !fs::is_empty(folder);
-    if (is_taken) throw DataError(folder.string() + ": is not empty, would mix two sequences");
+    if (is_taken) throw DataError(folder.string() + ": is not empty, would mix two sequences; --overwrite replaces it");
   }
   for (const char* name : {"poses.txt", "times.txt", "calib.txt"}) {
     const fs::path file = directory / name;
-    if (fs::exists(file)) throw DataError(file.string() + ": is there already, belongs to another sequence");
+    if (fs::exists(file))
+      throw DataError(file.string() + ": is there already, belongs to another sequence; --overwrite replaces it");
   }
+}
+
+/// Scans and their labels have names of digits: nothing else is taken away.
+void removeSequence(const fs::path& directory) {
+  for (const char* name : {"velodyne", "labels"}) {
+    std::error_code ignored;
+    std::vector<fs::path> scans;
+    for (const auto& entry : fs::directory_iterator(directory / name, ignored)) {
+      const std::string stem = entry.path().stem().string();
+      if (stem.find_first_not_of("0123456789") == std::string::npos) scans.push_back(entry.path());
+    }
+    for (const fs::path& scan : scans) fs::remove(scan);
+  }
+  for (const char* name : {"poses.txt", "times.txt", "calib.txt"}) fs::remove(directory / name);
 }
 
 }  // namespace
 
-SequenceWriter::SequenceWriter(fs::path directory) : directory_(std::move(directory)) {
+SequenceWriter::SequenceWriter(fs::path directory, bool overwrite) : directory_(std::move(directory)) {
+  if (overwrite) removeSequence(directory_);
   requireNoSequence(directory_);
   createDirectory(directory_ / "velodyne");
   poses_.open(directory_ / "poses.txt");

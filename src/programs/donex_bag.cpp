@@ -8,6 +8,7 @@
 #include "bag/label_bag.h"
 #include "core/timing.h"
 #include "evaluation/comparison.h"
+#include "io/outputs.h"
 #include "io/whole_file.h"
 #include "programs/program.h"
 
@@ -17,32 +18,47 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Arguments {
-  std::vector<std::string> files;  ///< the parts of a recording, then the output
+  std::vector<std::string> files;  ///< IN.bag OUT.bag; with `directory` the parts of a recording
+  std::string directory;           ///< where the labelled parts go
   std::string summary;
+  bool overwrite = false;
 };
 
-/// One output a part: OUT itself, or files of their names in the directory OUT.
-BagParts outputsOf(const BagParts& in, const fs::path& out) {
-  if (in.size() == 1 && !fs::is_directory(out)) return {out};
+/// What is read and, part by part, what is written.
+struct Files {
+  BagParts in, out;
+};
+
+/// Files of the parts' names.
+BagParts outputsIn(const fs::path& directory, const BagParts& in) {
   BagParts outputs;
   for (const fs::path& part : in) {
-    const fs::path output = out / part.filename();
+    const fs::path output = directory / part.filename();
     const bool is_taken = std::find(outputs.begin(), outputs.end(), output) != outputs.end();
     if (is_taken)
       throw ArgumentError(part.filename().string() + ": two parts have this name, one would overwrite the other");
     outputs.push_back(output);
   }
-  createDirectory(out);
   return outputs;
 }
 
-void requireOtherFiles(const BagParts& in, const BagParts& out) {
-  for (const fs::path& output : out) {
-    for (const fs::path& part : in) {
-      std::error_code ignored;  // where the input is missing, that is told when it is opened
-      if (fs::equivalent(part, output, ignored)) throw ArgumentError("OUT.bag is IN.bag, which would be overwritten");
-    }
+Files filesOf(const Arguments& arguments) {
+  BagParts given(arguments.files.begin(), arguments.files.end());
+  if (!arguments.directory.empty()) return {given, outputsIn(arguments.directory, given)};
+  if (given.size() == 1) throw ArgumentError("OUT.bag or --out DIR is required");
+  if (given.size() > 2) {
+    throw ArgumentError(
+        fmt::format("{} bags and no --out DIR: IN.bag OUT.bag, or the parts of a recording and --out", given.size()));
   }
+  return {{given[0]}, {given[1]}};
+}
+
+/// Faults before the first byte is written.
+void requireOutputs(const Arguments& arguments, const Files& files) {
+  Outputs outputs(arguments.overwrite);
+  for (const fs::path& part : files.in) outputs.addInput(part);
+  for (const fs::path& output : files.out) outputs.require(output);
+  if (!arguments.summary.empty()) outputs.require(arguments.summary);
 }
 
 void report(const LabelBagSummary& summary) {
@@ -85,11 +101,11 @@ void keepSummary(const fs::path& file, const LabelBagSummary& summary, const Con
 }
 
 void run(const CLI::App& app, const Arguments& arguments, const LabelBagOptions& options) {
-  const BagParts in(arguments.files.begin(), arguments.files.end() - 1);
-  const BagParts out = outputsOf(in, arguments.files.back());
-  requireOtherFiles(in, out);
+  const Files files = filesOf(arguments);
+  requireOutputs(arguments, files);
+  if (!arguments.directory.empty()) createDirectory(arguments.directory);
   std::optional<ProgressBar> progress;
-  const auto summary = labelBag(in, out, options, [&](std::size_t, std::size_t total) {
+  const auto summary = labelBag(files.in, files.out, options, [&](std::size_t, std::size_t total) {
     if (!progress) progress.emplace(total);
     progress->advance();
   });
@@ -108,11 +124,13 @@ int main(int argc, char** argv) {
   donex::LabelBagOptions options;
   app.footer(
       "donex_bag IN.bag OUT.bag\n"
-      "donex_bag PART_0.bag PART_1.bag ... OUT_DIR   (a split recording, labelled as one)");
+      "donex_bag PART_0.bag PART_1.bag ... --out DIR   (a split recording, labelled as one)");
   app.add_option("BAGS", arguments.files,
-                 "IN.bag OUT.bag: everything of IN and its labelled clouds; OUT is overwritten")
+                 "IN.bag OUT.bag: everything of IN and its labelled clouds; with --out only what is read")
       ->required()
-      ->expected(2, 100000);
+      ->expected(1, 100000);
+  app.add_option("--out", arguments.directory, "directory for the labelled bags, which keep their names");
+  donex::addOverwrite(app, arguments.overwrite);
   app.add_option("--points", options.points, "topic of the clouds; needed where there are several");
   app.add_option("--odom", options.odom,
                  "topic of the odometry; needed where there are several. By default (odometry_source auto) the ego "

@@ -10,6 +10,7 @@
 
 #include "evaluation/comparison.h"
 #include "io/number_text.h"
+#include "io/outputs.h"
 #include "io/whole_file.h"
 #include "programs/program.h"
 
@@ -24,6 +25,7 @@ struct Arguments {
   std::string methods;     ///< separated by commas; empty: all
   std::size_t frames = 0;  ///< 0: all
   bool skip_table_1 = false;
+  bool overwrite = false;
 };
 
 /// A method with its settings.
@@ -179,6 +181,13 @@ void writeReports(const Comparison& comparison, const fs::path& out) {
   fmt::print("\n{}\n", (out / "report.html").string());
 }
 
+void requireOutputs(const Arguments& arguments) {
+  const std::set<std::string> ours{"report.csv", "report.json", "report.html", "predictions", "table_1"};
+  Outputs outputs(arguments.overwrite);
+  for (const std::string& directory : arguments.sequences) outputs.addSequence(directory);
+  outputs.requireIn(arguments.out, [&](const std::string& name) { return ours.count(name) != 0; });
+}
+
 void run(const CLI::App& app, const Arguments& arguments) {
   const auto contenders = chooseContenders(arguments.methods);
   Comparison comparison;
@@ -189,6 +198,7 @@ void run(const CLI::App& app, const Arguments& arguments) {
   for (const std::string& directory : arguments.sequences) {  // all faults of the input before the first hour of work
     requireTruth(openSequence(app, directory));
   }
+  requireOutputs(arguments);
   createDirectory(arguments.out);
   std::set<std::string> names;
   for (const std::string& directory : arguments.sequences) {
@@ -212,5 +222,6 @@ int main(int argc, char** argv) {
   app.add_option("--methods", arguments.methods, "only these, separated by commas; by default all");
   app.add_option("--frames", arguments.frames, "only the first N scans")->check(CLI::PositiveNumber);
   app.add_flag("--skip-table-1", arguments.skip_table_1, "leave out the times of the paper's Table 1");
+  donex::addOverwrite(app, arguments.overwrite);
   return donex::runProgram(app, argc, argv, [&] { donex::run(app, arguments); });
 }

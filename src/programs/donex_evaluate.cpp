@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "evaluation/comparison.h"
+#include "io/outputs.h"
 #include "io/whole_file.h"
 #include "programs/program.h"
 
@@ -15,6 +16,7 @@ struct Arguments {
   std::vector<std::string> predictions;
   std::size_t frames = 0;  ///< 0: all
   std::string csv, json, html;
+  bool overwrite = false;
 };
 
 std::vector<std::pair<std::string, fs::path>> directoriesOf(const Arguments& arguments) {
@@ -26,6 +28,18 @@ std::vector<std::pair<std::string, fs::path>> directoriesOf(const Arguments& arg
   }
   faults.throwIfAny();
   return directories;
+}
+
+void requireOutputs(const Arguments& arguments) {
+  Outputs outputs(arguments.overwrite);
+  outputs.addSequence(arguments.sequence);
+  for (const std::string& prediction : arguments.predictions) {
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(prediction, ignored)) outputs.addInput(entry.path());
+  }
+  for (const std::string& file : {arguments.csv, arguments.json, arguments.html}) {
+    if (!file.empty()) outputs.require(file);
+  }
 }
 
 void writeReports(const CLI::App& app, const Arguments& arguments, const SequenceComparison& sequence) {
@@ -42,6 +56,7 @@ void writeReports(const CLI::App& app, const Arguments& arguments, const Sequenc
 void run(const CLI::App& app, const Arguments& arguments) {
   const SequenceReader sequence = openSequence(app, arguments.sequence);
   requireTruth(sequence);
+  requireOutputs(arguments);
   const auto directories = directoriesOf(arguments);
   const std::size_t scans = scansOf(sequence, arguments.frames);
   SequenceComparison comparison;
@@ -72,5 +87,6 @@ int main(int argc, char** argv) {
   app.add_option("--csv", arguments.csv, "write every count to this file");
   app.add_option("--json", arguments.json, "the same as JSON");
   app.add_option("--html", arguments.html, "a report with plots and pictures, one page that holds all it shows");
+  donex::addOverwrite(app, arguments.overwrite);
   return donex::runProgram(app, argc, argv, [&] { donex::run(app, arguments); });
 }

@@ -6,6 +6,7 @@
 
 #include "evaluation/map_score.h"
 #include "io/number_text.h"
+#include "io/outputs.h"
 #include "io/sequence.h"
 #include "io/static_map.h"
 #include "programs/program.h"
@@ -26,6 +27,7 @@ struct Arguments {
   std::size_t memory = 500;  ///< [MB]
   std::size_t frames = 0;    ///< 0: all
   bool compare = false;
+  bool overwrite = false;
   std::string points, odom;
 };
 
@@ -123,8 +125,11 @@ void mapBag(const CLI::App& app, const Arguments& arguments, const Config& confi
 void run(const CLI::App& app, const Arguments& arguments, const Config& config) {
   const fs::path directory = fs::absolute(arguments.out).parent_path();
   if (!fs::is_directory(directory)) throw DataError(directory.string() + ": is not a directory");
-  Mapper mapper(arguments);
   const bool is_bag = fs::path(arguments.in).extension() == ".bag";
+  Outputs outputs(arguments.overwrite);
+  is_bag ? outputs.addInput(arguments.in) : outputs.addSequence(arguments.in);
+  outputs.require(arguments.out);
+  Mapper mapper(arguments);
 #ifdef DONEX_WITH_BAGS
   if (is_bag && arguments.frames != 0) throw ArgumentError("--frames is for sequences");
   const bool has_topics = !arguments.points.empty() || !arguments.odom.empty();
@@ -156,6 +161,7 @@ int main(int argc, char** argv) {
                "score the map by the labels of the sequence or of the bag's clouds: PR, RR, F1, SA, DA, AA");
   app.add_option("--points", arguments.points, "topic of a bag's clouds; needed where there are several");
   app.add_option("--odom", arguments.odom, "topic of a bag's odometry; needed where there are several");
+  donex::addOverwrite(app, arguments.overwrite);
   const donex::ConfigOptions config(app);
   donex::Config defaults;
   defaults.motion.source = donex::OdometrySource::kAuto;  // of bags; a sequence has poses

@@ -9,6 +9,7 @@
 #include "evaluation/comparison.h"
 #include "evaluation/drift.h"
 #include "io/number_text.h"
+#include "io/outputs.h"
 #include "io/sequence.h"
 #include "io/whole_file.h"
 #include "programs/program.h"
@@ -23,6 +24,7 @@ struct Arguments {
   std::string out;
   std::size_t frames = 0;  ///< 0: all
   std::string odometry = "given";
+  bool overwrite = false;
 };
 
 struct Run {
@@ -31,13 +33,16 @@ struct Run {
   Evaluation evaluation;
 };
 
-/// Creates the directory of the predictions, unless that would overwrite the ground truth.
+/// Creates the directory of the predictions, unless that would write over anything.
 void prepareOutput(const Arguments& arguments) {
   if (arguments.out.empty()) return;
   const fs::path out = fs::weakly_canonical(arguments.out);
   if (out == fs::weakly_canonical(fs::path(arguments.sequence) / "labels")) {
     throw ArgumentError("--out " + arguments.out + " holds the ground truth, it would be overwritten");
   }
+  Outputs outputs(arguments.overwrite);
+  outputs.addSequence(arguments.sequence);
+  outputs.requireIn(arguments.out, [](const std::string& name) { return isLabelFile(name) || name == "run.json"; });
   createDirectory(arguments.out);
 }
 
@@ -120,6 +125,7 @@ int main(int argc, char** argv) {
                  "given: the poses of poses.txt; lidar: found from the scans, and compared with those; by default " +
                      arguments.odometry)
       ->check(CLI::IsMember({"given", "lidar"}));
+  donex::addOverwrite(app, arguments.overwrite);
   const donex::ConfigOptions options(app);
   return donex::runProgram(app, argc, argv, [&] { donex::run(app, arguments, options); });
 }

@@ -6,6 +6,7 @@
 #include "bag/bag_file.h"
 #include "bag/sequence_bag.h"
 #include "io/number_text.h"
+#include "io/outputs.h"
 #include "programs/program.h"
 
 namespace donex {
@@ -15,11 +16,15 @@ struct Arguments {
   std::string sequence, file;
   std::string compression = "none";
   SequenceBagOptions options;
+  bool overwrite = false;
 };
 
 void run(const CLI::App& app, Arguments& arguments) {
   arguments.options.compression = parseCompression(arguments.compression);
   const SequenceReader sequence = openSequence(app, arguments.sequence);
+  Outputs outputs(arguments.overwrite);
+  outputs.addSequence(arguments.sequence);
+  outputs.require(arguments.file);
   std::optional<ProgressBar> progress(sequence.size());
   const auto summary = writeSequenceBag(sequence, arguments.file, arguments.options, [&] { progress->advance(); });
   progress.reset();
@@ -37,7 +42,7 @@ int main(int argc, char** argv) {
                "donex_sequence_to_bag");
   donex::Arguments arguments;
   app.add_option("SEQ_DIR", arguments.sequence, "velodyne/NNNNNN.bin, poses.txt, times.txt")->required();
-  app.add_option("OUT.bag", arguments.file, "overwritten")->required();
+  app.add_option("OUT.bag", arguments.file, "must not exist, unless --overwrite")->required();
   app.add_option("--odom-rate", arguments.options.odometry.rate,
                  "odometry messages a second, evenly between two scans and one at each scan's stamp; by default 10")
       ->check(CLI::Range(0.1, 10000.0));
@@ -46,5 +51,6 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(-10.0, 10.0));
   app.add_option("--compression", arguments.compression, "none, lz4 or bz2; by default none")
       ->check(CLI::IsMember({"none", "lz4", "bz2"}));
+  donex::addOverwrite(app, arguments.overwrite);
   return donex::runProgram(app, argc, argv, [&] { donex::run(app, arguments); });
 }

@@ -7,6 +7,7 @@
 
 #include "donex/motion/ego_motion.h"
 #include "io/number_text.h"
+#include "io/outputs.h"
 #include "io/sequence.h"
 #include "programs/program.h"
 #include "simulation/simulator.h"
@@ -28,6 +29,7 @@ struct Arguments {
   std::string scene, out;
   std::string poses = "true";
   std::string compression = "none";
+  bool overwrite = false;
   SimulatorOptions options;
 };
 
@@ -123,7 +125,7 @@ void writeSequence(const CLI::App& app, const Arguments& arguments) {
     warn(app, "the layout of a sequence has no time for each echo: the distortion cannot be undone; write a bag");
   }
   Simulator simulator(arguments.scene, arguments.options);
-  SequenceWriter writer(arguments.out);
+  SequenceWriter writer(arguments.out, arguments.overwrite);
   SequenceScans scans(arguments.poses == "odometry", arguments.options.odometry);
   std::optional<ProgressBar> progress(simulator.size());
   SimulatedScan scan;
@@ -166,6 +168,7 @@ void writeBag(const CLI::App&, const Arguments&) { throw ArgumentError("this pro
 void run(const CLI::App& app, Arguments& arguments) {
   check(arguments);
   const bool is_bag = std::filesystem::path(arguments.out).extension() == ".bag";
+  if (is_bag) Outputs(arguments.overwrite).require(arguments.out);
   is_bag ? writeBag(app, arguments) : writeSequence(app, arguments);
 }
 
@@ -182,6 +185,7 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"true", "odometry"}));
   app.add_option("--compression", arguments.compression, "of a bag: none, lz4 or bz2; by default none")
       ->check(CLI::IsMember({"none", "lz4", "bz2"}));
+  donex::addOverwrite(app, arguments.overwrite);
   visitOptions(arguments.options, donex::OptionAdder{app});
   return donex::runProgram(app, argc, argv, [&] { donex::run(app, arguments); });
 }

@@ -11,7 +11,11 @@
 
 #include "core/timing.h"
 #include "io/config_file.h"
+<<<<<<< HEAD
 #include "io/number_text.h"
+=======
+#include "io/outputs.h"
+>>>>>>> 0ac280f (Outputs: no program writes over what is there without --overwrite, nor over an input by whatever path or link; parts of a recording need --out)
 
 namespace donex {
 namespace {
@@ -36,6 +40,9 @@ int runBody(const CLI::App& app, const std::function<void()>& body) {
   } catch (const SettingError& error) {
     warn(app, error.what());
     return kWrongArguments;
+  } catch (const OutputRefused& error) {
+    warn(app, error.what());
+    return kWrongArguments;
   } catch (const ArgumentError& error) {
     warn(app, error.what());
     return kWrongArguments;
@@ -56,6 +63,10 @@ int runProgram(CLI::App& app, int argc, char** argv, const std::function<void()>
 }
 
 void warn(const CLI::App& app, const std::string& text) { fmt::print(stderr, "{}: {}\n", app.get_name(), text); }
+
+void addOverwrite(CLI::App& app, bool& overwrite) {
+  app.add_flag("--overwrite", overwrite, "replace outputs that are there already; inputs never are");
+}
 
 SequenceReader openSequence(const CLI::App& app, const std::string& directory) {
   SequenceReader sequence(directory);

@@ -28,6 +28,9 @@ int runProgram(CLI::App& app, int argc, char** argv, const std::function<void()>
 /// A line on stderr after the program's name, for what a user should know and need not stop for.
 void warn(const CLI::App& app, const std::string& text);
 
+/// The option --overwrite: without it no program writes over what is there (io/outputs.h).
+void addOverwrite(CLI::App& app, bool& overwrite);
+
 /// Opens a sequence and warns of what was assumed. Throws DataError.
 SequenceReader openSequence(const CLI::App& app, const std::string& directory);
 

@@ -15,12 +15,35 @@ TEST(BagProgram, TwoPartsOfOneNameAreRefused) {
     fs::create_directory(directory.path() / folder);
     test::writeText(directory.path() / folder / "rec.bag", "never opened");
   }
-  const std::string arguments = " a/rec.bag b/rec.bag out";
+  const std::string arguments = " a/rec.bag b/rec.bag --out out";
   const test::Outcome outcome = test::runCommand("cd " + directory.path().string() + " && " + DONEX_BAG + arguments);
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.text.find("rec.bag: two parts have this name, one would overwrite the other"), std::string::npos)
       << outcome.text;
   EXPECT_FALSE(fs::exists(directory.path() / "out"));
+}
+
+TEST(BagProgram, aForgottenOutputFolderReplacesNoRecording) {
+  const test::TemporaryDirectory directory;
+  for (const char* part : {"p_0.bag", "p_1.bag", "p_2.bag"}) test::writeText(directory.path() / part, part);
+  const std::string donex_bag = "cd " + directory.path().string() + " && " + DONEX_BAG;
+  const auto expectRefused = [&](const std::string& arguments, const std::string& sentence) {
+    const test::Outcome outcome = test::runCommand(donex_bag + arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments;
+    EXPECT_EQ(outcome.text, "donex_bag: " + sentence + "\n") << arguments;
+    for (const char* part : {"p_0.bag", "p_1.bag", "p_2.bag"}) {
+      EXPECT_EQ(test::readText(directory.path() / part), part) << arguments;
+    }
+  };
+  expectRefused(" p_0.bag p_1.bag", "p_1.bag: is there already; --overwrite replaces it");
+  expectRefused(" p_0.bag p_1.bag p_2.bag",
+                "3 bags and no --out DIR: IN.bag OUT.bag, or the parts of a recording and --out");
+  expectRefused(" p_0.bag p_1.bag p_2.bag --overwrite",
+                "3 bags and no --out DIR: IN.bag OUT.bag, or the parts of a recording and --out");
+  expectRefused(" p_0.bag p_1.bag --out . --overwrite", "./p_0.bag: is an input, which would be overwritten");
+  expectRefused(" p_0.bag new.bag --summary p_1.bag", "p_1.bag: is there already; --overwrite replaces it");
+  expectRefused(" p_0.bag new.bag --summary new.bag",
+                "new.bag: two outputs have this name, one would overwrite the other");
 }
 
 }  // namespace

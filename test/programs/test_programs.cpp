@@ -156,10 +156,64 @@ TEST_F(Programs, MapIsBuiltAndScored) {
   const Outcome outcome = expect(0, "8 scans, ", DONEX_MAP, "seq map.pcd --compare --method donex_2d");
   EXPECT_NE(outcome.text.find("by voxel of 0.2 m (ERASOR)"), std::string::npos) << outcome.text;
   EXPECT_GT(fs::file_size(path("map.pcd")), 300U);
-  expect(1, "none: is not a directory", DONEX_MAP, "none map.pcd");
+  expect(1, "none: is not a directory", DONEX_MAP, "none new.pcd");
   expect(1, "/none: is not a directory", DONEX_MAP, "seq none/map.pcd");
   fs::remove_all(path("seq/labels"));
-  expect(1, "seq/labels: holds no labels to score by", DONEX_MAP, "seq map.pcd --compare");
+  expect(1, "seq/labels: holds no labels to score by", DONEX_MAP, "seq map.pcd --compare --overwrite");
+}
+
+/// What is there keeps its content, whatever is said but --overwrite; an input keeps it always.
+class Overwriting : public Programs {
+ protected:
+  void refuses(const std::string& file, const std::string& sentence, const char* program,
+               const std::string& arguments) {
+    if (!fs::exists(path(file))) test::writeText(path(file), "somebody's");
+    const std::string before = test::readText(path(file));
+    const Outcome outcome = run(program, arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments << '\n' << outcome.text;
+    EXPECT_NE(outcome.text.find(sentence), std::string::npos) << arguments << '\n' << outcome.text;
+    EXPECT_EQ(test::readText(path(file)), before) << arguments;
+  }
+};
+
+TEST_F(Overwriting, IsRefusedByEveryProgram) {
+  const std::string there = ": is there already; --overwrite replaces";
+  fs::create_directories(path("pred"));
+  refuses("pred/000003.label", "000003.label" + there, DONEX_SEQUENCE, "seq --out pred");
+  refuses("map.pcd", "map.pcd" + there, DONEX_MAP, "seq map.pcd");
+  expect(0, "8 scans", DONEX_SEQUENCE, "seq --out pred --overwrite");
+  for (const char* kind : {"csv", "json", "html"}) {
+    const std::string file = std::string("report.") + kind;
+    refuses(file, file + there, DONEX_EVALUATE, "seq pred --" + std::string(kind) + " " + file);
+    fs::remove(path(file));
+  }
+  fs::create_directories(path("compared"));
+  refuses("compared/report.csv", "report.csv" + there, DONEX_COMPARE, "seq --out compared");
+#ifdef DONEX_BAG
+  refuses("in.bag", "in.bag" + there, DONEX_SEQUENCE_TO_BAG, "seq in.bag");
+  refuses("in.bag", "in.bag" + there, DONEX_SIMULATE, "empty_room in.bag --duration 0.2");
+  expect(0, "8 clouds", DONEX_SEQUENCE_TO_BAG, "seq in.bag --overwrite");
+#endif
+  expect(0, "8 scans", DONEX_MAP, "seq map.pcd --overwrite");
+}
+
+TEST_F(Overwriting, OfAnInputIsRefusedByWhateverPath) {
+  const std::string input = ": is an input, which would be overwritten";
+  const std::string cloud = "seq/velodyne/000003.bin";
+  fs::create_symlink("seq/velodyne/000003.bin", path("soft.pcd"));
+  fs::create_hard_link(path(cloud), path("hard.pcd"));
+  for (const std::string& name : {cloud, std::string("soft.pcd"), std::string("hard.pcd")}) {
+    refuses(cloud, name + input, DONEX_MAP, "seq " + name + " --overwrite");
+  }
+  fs::create_directories(path("pred"));
+  fs::create_hard_link(path("seq/labels/000003.label"), path("pred/000003.label"));
+  refuses("seq/labels/000003.label", "000003.label" + input, DONEX_SEQUENCE, "seq --out pred --overwrite");
+  fs::create_directory_symlink(path("seq"), path("other_seq"));
+  refuses("seq/labels/000003.label", "holds the ground truth", DONEX_SEQUENCE,
+          "seq --out other_seq/labels --overwrite");
+  fs::create_symlink("nowhere", path("dangling.pcd"));
+  expect(2, "dangling.pcd: is there already", DONEX_MAP, "seq dangling.pcd");
+  EXPECT_TRUE(fs::is_symlink(path("dangling.pcd")));
 }
 
 #ifdef DONEX_BAG
@@ -169,8 +223,8 @@ TEST_F(Programs, MapIsBuiltFromABag) {
   expect(0, "8 scans, ", DONEX_MAP, "in.bag map.pcd --method peopleremover");
   expect(1, "in.bag: no cloud on /points has a field label", DONEX_MAP, "in.bag other.pcd --compare");
   EXPECT_FALSE(fs::exists(path("other.pcd")));
-  expect(2, "--points and --odom are for bags", DONEX_MAP, "seq map.pcd --points /points");
-  expect(2, "--frames is for sequences", DONEX_MAP, "in.bag map.pcd --frames 3");
+  expect(2, "--points and --odom are for bags", DONEX_MAP, "seq new.pcd --points /points");
+  expect(2, "--frames is for sequences", DONEX_MAP, "in.bag new.pcd --frames 3");
 }
 
 /// "(N static, M moving)" of a map's score.
@@ -212,7 +266,7 @@ TEST_F(Programs, BagRefusesWrongArguments) {
   run(DONEX_SEQUENCE_TO_BAG, "seq in.bag");
   const auto size = fs::file_size(path("in.bag"));
   expect(2, "required", DONEX_BAG, "in.bag");
-  expect(2, "OUT.bag is IN.bag", DONEX_BAG, "in.bag ./in.bag");
+  expect(2, "./in.bag: is an input", DONEX_BAG, "in.bag ./in.bag --overwrite");
   expect(2, "there is no parameter x", DONEX_BAG, "in.bag out.bag --set x=1");
   expect(2, "", DONEX_SEQUENCE_TO_BAG, "seq other.bag --odom-rate 0");
   expect(2, "", DONEX_SEQUENCE_TO_BAG, "seq other.bag --compression zip");
@@ -225,6 +279,7 @@ TEST_F(Programs, BagNamesBadData) {
   expect(1, "text.bag: is not a bag or is cut off", DONEX_BAG, "text.bag out.bag");
   run(DONEX_SEQUENCE_TO_BAG, "seq in.bag");
   expect(1, "in.bag: has no topic /none (--points); its topics are:", DONEX_BAG, "in.bag out.bag --points /none");
+  fs::remove(path("out.bag"));
   fs::resize_file(path("in.bag"), fs::file_size(path("in.bag")) - 100);
   expect(1, "in.bag: ", DONEX_BAG, "in.bag out.bag");
   EXPECT_FALSE(fs::exists(path("out.bag")));
