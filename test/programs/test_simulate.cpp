@@ -110,11 +110,12 @@ TEST_F(Simulate, OverwritesNothingOfAnotherSequence) {
 TEST_F(Simulate, ReplacesASequenceWhenToldSo) {
   expect(0, {"6 scans"}, "empty_room out --duration 0.6 --beams 16");
   test::writeText(path("out/notes.txt"), "somebody's");
-  test::writeText(path("out/labels/notes.txt"), "somebody's");
   expect(0, {"2 scans"}, "empty_room out --duration 0.2 --beams 16 --overwrite");
   EXPECT_FALSE(std::filesystem::exists(path("out/velodyne/000002.bin")));
   EXPECT_FALSE(std::filesystem::exists(path("out/labels/000002.label")));
   EXPECT_EQ(test::readText(path("out/notes.txt")), "somebody's");
+  test::writeText(path("out/labels/notes.txt"), "somebody's");
+  expect(1, {"out/labels: is not empty"}, "empty_room out --duration 0.2 --beams 16 --overwrite");
   EXPECT_EQ(test::readText(path("out/labels/notes.txt")), "somebody's");
 }
 
