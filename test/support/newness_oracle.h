@@ -35,10 +35,29 @@ class Newness {
   bool isYoung(int birth, bool was_free) const {
     return stampOf(birth) >= stamps_.back() - (was_free ? new_window_ : found_window_);
   }
-  bool wasSeenFree(const SightView& before_scan, const Eigen::Vector3f& point, double since, bool settled) const {
+  /// What earlier scans say of a place. With free evidence scans are weighed: free ones must be more than twice the
+  /// surfaces seen before the newest of them, and no fewer than the surfaces seen long ago.
+  struct Look {
+    bool free = false, surely = false, surface = false;
+  };
+  Look look(const SightView& before_scan, const Eigen::Vector3f& point, double since, bool settled) const {
     int needed = config_.free_evidence ? config_.free_scans : 1;
     if (settled && config_.careful_sight) needed = config_.settled_free_scans;
-    return before_scan.ask(point, since, std::numeric_limits<int>::max()).free >= needed;
+    const auto seen = before_scan.ask(point, since, std::numeric_limits<int>::max());
+    Look look;
+    look.free = seen.free >= needed;
+    look.surely = look.free;
+    if (!config_.free_evidence) return look;
+    if (seen.free <= 2 * seen.stale_surface || seen.free < seen.lasting_surface) look.free = false;
+    look.surely = look.free && 2 * seen.free > seen.free + seen.stale_surface + seen.hidden;
+    look.surface = !look.free && seen.lasting_surface > 0;
+    return look;
+  }
+  /// Of a place that was never hit: without free evidence it is new.
+  Look lookAtUnknown(const SightView& before_scan, const Eigen::Vector3f& point) const {
+    if (now() == 1) return {};
+    if (!config_.free_evidence) return {true, true, false};
+    return look(before_scan, point, kBeforeEverything, false);
   }
 
   EvidenceConfig config_;
@@ -64,29 +83,29 @@ class Newness3d : public Newness {
     const Voxel voxel = absolute(voxelOf(in_window), window);
     const auto known = voxels_.find(voxel);
     if (known == voxels_.end()) {
-      const bool is_first_scan = now() == 1;
-      const bool free =
-          !is_first_scan && (!config_.free_evidence || wasSeenFree(before_scan, point, kBeforeEverything, false));
-      voxels_[voxel] = born(voxel, free);
+      voxels_[voxel] = born(voxel, lookAtUnknown(before_scan, point));
     } else if (known->second.last_hit < now() - 1) {
       const bool settled = !isYoung(known->second.birth, known->second.was_free);
-      if (wasSeenFree(before_scan, point, stampOf(known->second.last_hit), settled)) known->second = born(voxel, true);
+      const Look seen = look(before_scan, point, stampOf(known->second.last_hit), settled);
+      if (seen.free) known->second = born(voxel, seen);
     }
     State& state = voxels_[voxel];
     state.last_hit = now();
     if (!isYoung(state.birth, state.was_free)) return Place::kSettled;
+    if (state.at_surface) return Place::kAtSurface;
     if (!state.was_free) return Place::kUnobserved;
-    return state.at_surface ? Place::kAtSurface : Place::kNew;
+    return state.surely ? Place::kSurelyNew : Place::kNew;
   }
 
  private:
   struct State {
     int birth = kNever, last_hit = kNever;
-    bool was_free = false, at_surface = false;
+    bool was_free = false, surely = false, at_surface = false;
   };
 
-  State born(const Voxel& voxel, bool was_free) const {
-    return {now(), now(), was_free, was_free && config_.neighbourhood && touchesSettled(voxel)};
+  State born(const Voxel& voxel, const Look& seen) const {
+    const bool touches = seen.free && config_.neighbourhood && touchesSettled(voxel);
+    return {now(), now(), seen.free, seen.surely, touches || seen.surface};
   }
 
   /// A surface that was hit in one of the last four scans.
@@ -125,27 +144,28 @@ class Newness2d : public Newness {
     const int before = cell.hits.size() > 1 ? cell.hits[cell.hits.size() - 2] : kNever;
     const bool missed = before < now() - 1;
     if (cell.settled.holds(height)) {
-      if (!(missed && wasSeenFree(before_scan, point, stampOf(before), true))) return Place::kSettled;
+      if (!(missed && look(before_scan, point, stampOf(before), true).free)) return Place::kSettled;
       cell.settled = HeightRange{};
     }
-    if (cell.arrived.holds(height)) return Place::kNew;
+    if (cell.arrived.holds(height)) return arrivedPlace(cell, height);
     if (cell.found.holds(height) && !missed) return foundPlace(cell, height);
-    const bool free =
-        now() > 1 && (!config_.free_evidence || wasSeenFree(before_scan, point, kBeforeEverything, false));
-    const bool at_surface = free && config_.neighbourhood && touchesSettled(position, height);
-    const bool comes = free && !at_surface;
+    const Look seen = lookAtUnknown(before_scan, point);
+    const bool touches = seen.free && config_.neighbourhood && touchesSettled(position, height);
+    const bool comes = seen.free && !touches;
     HeightRange& range = comes ? cell.arrived : cell.found;
     if (range.empty()) (comes ? cell.arrived_birth : cell.found_birth) = now();
     range.extend(height);
-    if (at_surface) cell.surfaces.push_back(height);
-    return comes ? Place::kNew : foundPlace(cell, height);
+    if (comes && seen.surely) cell.sure.push_back(height);
+    if (touches || seen.surface) cell.surfaces.push_back(height);
+    return comes ? arrivedPlace(cell, height) : foundPlace(cell, height);
   }
 
  private:
   using Position = std::array<int, 2>;
   struct Cell {
     HeightRange settled, arrived, found;
-    std::vector<float> surfaces;  ///< heights in `found` that had been seen free and touched a surface
+    std::vector<float> surfaces;  ///< heights in `found` that belonged to a surface
+    std::vector<float> sure;      ///< heights in `arrived` that had surely been free
     int arrived_birth = kNever, found_birth = kNever;
     std::vector<int> hits;  ///< scans
   };
@@ -155,6 +175,7 @@ class Newness2d : public Newness {
     if (!cell.arrived.empty() && !isYoung(cell.arrived_birth, true)) {
       cell.settled.extend(cell.arrived);
       cell.arrived = HeightRange{};
+      cell.sure.clear();
     }
     if (!cell.found.empty() && !isYoung(cell.found_birth, false)) {
       cell.settled.extend(cell.found);
@@ -163,11 +184,16 @@ class Newness2d : public Newness {
     }
   }
 
-  /// Between the lowest and the highest that was found at a surface everything is that surface.
+  /// Between the lowest and the highest that was found at a surface everything is that surface; so for what was sure.
   static Place foundPlace(const Cell& cell, float height) {
-    const auto [lowest, highest] = std::minmax_element(cell.surfaces.begin(), cell.surfaces.end());
-    const bool at_surface = lowest != cell.surfaces.end() && height >= *lowest && height <= *highest;
-    return at_surface ? Place::kAtSurface : Place::kUnobserved;
+    return isAmong(cell.surfaces, height) ? Place::kAtSurface : Place::kUnobserved;
+  }
+  static Place arrivedPlace(const Cell& cell, float height) {
+    return isAmong(cell.sure, height) ? Place::kSurelyNew : Place::kNew;
+  }
+  static bool isAmong(const std::vector<float>& heights, float height) {
+    const auto [lowest, highest] = std::minmax_element(heights.begin(), heights.end());
+    return lowest != heights.end() && height >= *lowest && height <= *highest;
   }
 
   /// A settled range within a voxel of this height, in this cell or one around it.

@@ -15,7 +15,8 @@ struct VoxelRecord {
   std::uint32_t birth = 0;     ///< scan in which it became occupied; 0: it never was
   std::uint32_t last_hit = 0;  ///< scan that hit it last
   bool was_free = false;       ///< at its birth the place had been seen free
-  bool at_surface = false;     ///< at its birth it touched established voxels
+  bool at_surface = false;     ///< at its birth it touched established voxels, or scans had seen a surface there
+  bool surely_free = false;    ///< at its birth most scans that knew of the place had seen it free
 
   bool occupied() const { return birth != 0; }
 };

@@ -12,9 +12,12 @@ namespace donex {
 enum class Place : std::uint8_t {
   kUnobserved,  ///< hit for the first time not long ago, and never seen free before; or not asked
   kNew,         ///< occupied not long ago after it had been seen free: something came
-  kAtSurface,   ///< the same, but it touched a settled surface when it became occupied: that surface's flicker
-  kSettled,     ///< occupied for longer than the birth window
+  kSurelyNew,   ///< the same, and most scans that knew anything of it had seen it free
+  kAtSurface,  ///< a surface's flicker: it touched a settled one when it became occupied, or earlier scans saw one here
+  kSettled,    ///< occupied for longer than the birth window
 };
+
+inline bool isNewPlace(Place place) { return place == Place::kNew || place == Place::kSurelyNew; }
 
 /// How an echo takes part in clusters.
 enum class ClusterRole : std::uint8_t {
@@ -31,6 +34,7 @@ struct JudgedScan {
   std::vector<Eigen::Vector3f> points;  ///< NaN where the echo is none
   std::vector<std::uint8_t> is_echo;
   std::vector<float> heights;  ///< above the local ground [m]
+  bool has_ground = true;      ///< otherwise heights are above the window's lowest corner
   std::vector<ClusterRole> roles;
   std::vector<Place> places;
 };

@@ -10,6 +10,9 @@ constexpr double kFoundWindow = 0.5;  // [s]
 constexpr double kBeforeEverything = -std::numeric_limits<double>::infinity();
 /// A settled voxel counts as a neighbouring surface while it was hit within this many scans.
 constexpr std::uint32_t kRecentScans = 4;
+constexpr int kAllScans = std::numeric_limits<int>::max();
+/// Free scans that outweigh one that saw a surface before: a beam that grazes an edge is as often beside it as on it.
+constexpr int kStaleWeight = 2;
 
 }  // namespace
 
@@ -38,12 +41,23 @@ double ScanClock::stampOf(std::uint32_t scan) const {
   return stamps_[scan % kRememberedStamps];
 }
 
-bool wasFree(const EvidenceConfig& config, const SightView& before, const Eigen::Vector3f& point, double since,
-             bool known, bool settled) {
-  if (!config.free_evidence && !known) return true;  // the paper: never hit is new
+PlaceBefore weigh(const EvidenceConfig& config, const SightView& before, const Eigen::Vector3f& point, double since,
+                  bool known, bool settled) {
+  if (!config.free_evidence && !known) return {true, true, false};  // the paper: never hit is new
   const int unsettled = config.free_evidence ? config.free_scans : 1;
   const int needed = settled && config.careful_sight ? config.settled_free_scans : unsettled;
-  return before.ask(point, since, needed).free >= needed;
+  if (!config.free_evidence) {
+    const bool was_free = before.ask(point, since, needed).free >= needed;
+    return {was_free, was_free, false};
+  }
+  const SightView::Evidence seen = before.ask(point, since, kAllScans);
+  // A surface that was seen before the last free scan did not come just now, and one that lasts did not at all.
+  const bool outweighs = seen.free > kStaleWeight * seen.stale_surface && seen.free >= seen.lasting_surface;
+  PlaceBefore place;
+  place.was_free = seen.free >= needed && outweighs;
+  place.surely_free = place.was_free && seen.free > seen.stale_surface + seen.hidden;
+  place.surface = !place.was_free && seen.lasting_surface > 0;
+  return place;
 }
 
 Place Newness3d::judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& point, const ScanClock& clock,
@@ -55,17 +69,19 @@ Place Newness3d::judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& 
     const bool missed = record.last_hit + 1 < clock.scan();
     // De-shadowing, asked where the answer matters: only a voxel that is hit again after a gap.
     const double since = record.occupied() ? clock.stampOf(record.last_hit) : kBeforeEverything;
-    const bool was_free = missed && wasFree(config_, before, point, since, record.occupied(), settled);
-    if (!record.occupied() || was_free) {
+    const PlaceBefore place = missed ? weigh(config_, before, point, since, record.occupied(), settled) : PlaceBefore();
+    if (!record.occupied() || place.was_free) {
       record.birth = clock.scan();
-      record.was_free = was_free;
-      record.at_surface = was_free && config_.neighbourhood && touchesSettled(voxel, clock);
+      record.was_free = place.was_free;
+      record.surely_free = place.surely_free;
+      record.at_surface = place.surface || (place.was_free && config_.neighbourhood && touchesSettled(voxel, clock));
     }
     record.last_hit = clock.scan();
   }
   if (!clock.isYoung(record.birth, record.was_free)) return Place::kSettled;
   if (record.at_surface) return Place::kAtSurface;
-  return record.was_free ? Place::kNew : Place::kUnobserved;
+  if (!record.was_free) return Place::kUnobserved;
+  return record.surely_free ? Place::kSurelyNew : Place::kNew;
 }
 
 bool Newness3d::touchesSettled(const Index3& voxel, const ScanClock& clock) const {
@@ -104,6 +120,7 @@ void Newness2d::settle(Cell& cell, const ScanClock& clock) const {
   };
   settle_range(cell.arrived, cell.arrived_birth, true);
   settle_range(cell.found, cell.found_birth, false);
+  if (cell.arrived.empty()) cell.surely = HeightRange{};
   if (cell.found.empty()) cell.at_surface = HeightRange{};
 }
 
@@ -122,21 +139,23 @@ Place Newness2d::judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& 
   const double since = cell.hit_before != 0 ? clock.stampOf(cell.hit_before) : kBeforeEverything;
   if (cell.settled.holds(height)) {
     // De-shadowing, asked where the answer matters: only in a cell that is hit again after a gap.
-    const bool has_left = missed && wasFree(config_, before, point, since, true, true);
+    const bool has_left = missed && weigh(config_, before, point, since, true, true).was_free;
     if (!has_left) return Place::kSettled;
     cell.settled = HeightRange{};
   }
-  if (cell.arrived.holds(height)) return Place::kNew;
+  if (cell.arrived.holds(height)) return cell.placeInArrived(height);
   if (cell.found.holds(height) && !missed) return cell.placeInFound(height);
-  const bool was_free = !is_first_scan && wasFree(config_, before, point, kBeforeEverything, false, false);
-  const bool at_surface = was_free && config_.neighbourhood && touchesSettled(voxel.x(), voxel.y(), height);
-  const bool comes = was_free && !at_surface;
+  const PlaceBefore place =
+      is_first_scan ? PlaceBefore() : weigh(config_, before, point, kBeforeEverything, false, false);
+  const bool touches = place.was_free && config_.neighbourhood && touchesSettled(voxel.x(), voxel.y(), height);
+  const bool comes = place.was_free && !touches;
   HeightRange& range = comes ? cell.arrived : cell.found;
   std::uint32_t& birth = comes ? cell.arrived_birth : cell.found_birth;
   if (range.empty()) birth = clock.scan();
   range.extend(height);
-  if (at_surface) cell.at_surface.extend(height);
-  return comes ? Place::kNew : cell.placeInFound(height);
+  if (comes && place.surely_free) cell.surely.extend(height);
+  if (touches || place.surface) cell.at_surface.extend(height);
+  return comes ? cell.placeInArrived(height) : cell.placeInFound(height);
 }
 
 bool Newness2d::touchesSettled(int x, int y, float height) const {

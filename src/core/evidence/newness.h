@@ -93,10 +93,12 @@ class Newness2d {
     HeightRange settled;     ///< occupied for longer than the birth window
     HeightRange arrived;     ///< new
     HeightRange found;       ///< unobserved, or at a surface
-    HeightRange at_surface;  ///< the part of `found` that had been seen free: what it holds was at a surface all along
+    HeightRange surely;      ///< the part of `arrived` that had surely been free
+    HeightRange at_surface;  ///< the part of `found` that belonged to a surface when it was found
     std::uint32_t arrived_birth = 0, found_birth = 0;
     std::uint32_t last_hit = 0, hit_before = 0;  ///< scans
 
+    Place placeInArrived(float height) const { return surely.holds(height) ? Place::kSurelyNew : Place::kNew; }
     Place placeInFound(float height) const { return at_surface.holds(height) ? Place::kAtSurface : Place::kUnobserved; }
   };
 
@@ -110,9 +112,16 @@ class Newness2d {
   std::vector<Cell> cells_;
 };
 
-/// True where enough scans since `since` [s] saw `point` free. `known`: the place is remembered, so it
-/// is forgotten only by being seen through; `settled`: careful sight wants more scans for it.
-bool wasFree(const EvidenceConfig& config, const SightView& before, const Eigen::Vector3f& point, double since,
-             bool known, bool settled);
+/// What earlier scans say of a place that is hit now.
+struct PlaceBefore {
+  bool was_free = false;
+  bool surely_free = false;  ///< most scans that knew anything of it saw it free
+  bool surface = false;      ///< not free: a surface was seen there for longer than anything takes to come
+};
+
+/// Weighs what the scans since `since` [s] saw at `point`. `known`: the place is remembered, so it is forgotten only by
+/// being seen through; `settled`: careful sight wants more scans for it.
+PlaceBefore weigh(const EvidenceConfig& config, const SightView& before, const Eigen::Vector3f& point, double since,
+                  bool known, bool settled);
 
 }  // namespace donex

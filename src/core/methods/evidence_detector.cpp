@@ -109,6 +109,7 @@ class EvidenceDetector : public Detector {
   void heightsAboveGround() {
     const bool enabled = config_.evidence.ground;
     const auto clearance = static_cast<float>(config_.evidence.ground_clearance);
+    judged_.has_ground = enabled;
     resizeTo(judged_.heights, judged_.points.size());
     if (enabled) {
       ground_.estimate(judged_.sensor, judged_.points, judged_.is_echo);
@@ -146,7 +147,7 @@ class EvidenceDetector : public Detector {
     proofs_.assign(judged_.points.size(), Proof::kNone);
     if (clock_.scan() == 1) return;  // nothing is known yet
     for (std::size_t i = 0; i < judged_.points.size(); ++i) {
-      const bool is_new = in_voxels_.inside[i] != 0 && judged_.places[i] == Place::kNew;
+      const bool is_new = in_voxels_.inside[i] != 0 && isNewPlace(judged_.places[i]);
       if (is_new) proofs_[i] = Proof::kAlone;
     }
   }

@@ -10,7 +10,8 @@ EchoReason reasonOf(const JudgedScan& scan, std::size_t i, bool inside) {
   if (!inside) return EchoReason::kOutside;
   if (scan.roles[i] != ClusterRole::kConnects) return EchoReason::kGround;
   switch (scan.places[i]) {
-    case Place::kNew: return EchoReason::kNewAlone;
+    case Place::kNew:
+    case Place::kSurelyNew: return EchoReason::kNewAlone;
     case Place::kAtSurface:
     case Place::kSettled: return EchoReason::kSettled;
     case Place::kUnobserved: break;
@@ -46,7 +47,7 @@ MemoryCells memoryCellsOf(const Newness3d& places, const ScanClock& clock, const
     const Eigen::Vector3f point = (voxel.cast<float>().array() + 0.5F) * size;
     const bool settled = !clock.isYoung(record.birth, record.was_free);
     const double since = clock.stampOf(record.last_hit);
-    auto& kind = wasFree(config, seen, point, since, true, settled) ? cells.seen_through : cells.shadowed;
+    auto& kind = weigh(config, seen, point, since, true, settled).was_free ? cells.seen_through : cells.shadowed;
     kind.emplace_back((odom_from_points * point.cast<double>()).cast<float>());
   });
   return cells;

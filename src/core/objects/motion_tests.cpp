@@ -20,6 +20,10 @@ struct Step {
 };
 constexpr Step kStep = {0.4, 0.25F}, kStepOfMany = {0.3, 0.2F};
 
+constexpr float kStandsBelow = 1.2F;  // [m] what begins lower may stand behind a fence or a parked car
+constexpr float kBeneath = 0.5F;      // [m] so near is a surface that lies beneath
+constexpr std::size_t kPointsBeneath = 16;
+
 /// Some echoes of a segment.
 struct Points {
   std::array<Eigen::Vector3d, kPresentPoints> in_odom;
@@ -57,6 +61,21 @@ bool MotionTests::hasMoved(const Trace& trace, const Segment& segment) const {
   const double shift = (segment.center() - trace.center).head<2>().norm();
   const bool worth_asking = !isMostlySettled(segment) && trace.size() >= kLeastPoints && shift >= step.shift;
   return worth_asking && hasLeft(trace, step.margin) && fitsElsewhere(trace, segment, step.shift);
+}
+
+bool MotionTests::hangs(const Segment& segment) const {
+  if (segment.lowest <= kStandsBelow) return false;
+  int seen = 0, hidden = 0;
+  const std::size_t stride = segment.echoes.size() / kPointsBeneath + 1;
+  for (std::size_t i = 0; i < segment.echoes.size(); i += stride) {
+    const std::uint32_t echo = segment.echoes[i];
+    Eigen::Vector3f beneath = scan_.points[echo];
+    beneath.z() -= scan_.heights[echo] - 0.5F * segment.lowest;
+    const SightImage::Sight sight = now_.throughGaps(beneath, kBeneath);
+    seen += sight == SightImage::Sight::kFree || sight == SightImage::Sight::kSurface ? 1 : 0;
+    hidden += sight == SightImage::Sight::kHidden ? 1 : 0;
+  }
+  return seen > hidden;
 }
 
 bool MotionTests::hasLeft(const Trace& trace, float margin) const {

@@ -30,6 +30,9 @@ class MotionTests {
   /// Slower objects than lookBack() sees, and objects behind fences, where careful sight knows nothing.
   bool hasMoved(const Trace& trace, const Segment& segment) const;
 
+  /// True where the segment begins high above ground and what lies beneath is seen: nothing holds it there that moves.
+  bool hangs(const Segment& segment) const;
+
  private:
   bool hasLeft(const Trace& trace, float margin) const;
   bool fitsElsewhere(const Trace& trace, const Segment& segment, double least_shift) const;

@@ -48,7 +48,7 @@ void ObjectTracker::update(const JudgedScan& scan, const Segments& segments, con
     if (isTooLong(segment)) continue;
     Track& track = trackOf(i, scan.stamp, segment);
     if (config_.motion) testMotion(track, tests, scan.stamp, segment);
-    verdicts[i] = decide(track, scan.stamp, segment);
+    verdicts[i] = decide(track, tests, scan.stamp, segment);
     if (config_.motion) track.trace = traces_.leave(scan, segment, track.trace);
     if (track.ever_dynamic) describe(track, verdicts[i].proof, scan, segment);
   }
@@ -121,7 +121,8 @@ void ObjectTracker::testMotion(Track& track, const MotionTests& tests, double st
     const FormerPlace former = tests.lookBack(trace);
     receded |= former.left >= config_.min_echoes && former.left > former.still;
     advanced |= former.left >= kLeastLeft && segment.new_echoes >= config_.min_echoes;
-    moved = moved || tests.hasMoved(trace, segment);
+    const bool fit_tells = isUpright(segment) || segment.new_echoes >= kLeastLeft || former.left >= kLeastLeft;
+    moved = moved || (fit_tells && tests.hasMoved(trace, segment));
   }
   track.receding_scans = receded ? track.receding_scans + 1 : 0;
   track.advancing_scans = advanced ? track.advancing_scans + 1 : 0;
@@ -129,20 +130,20 @@ void ObjectTracker::testMotion(Track& track, const MotionTests& tests, double st
 }
 
 /// All proofs of motion, those of the whole segment first.
-Proof ObjectTracker::proofOf(const Track& track, double stamp, const Segment& segment) const {
-  if (!isThin(segment, sensor_)) {
+Proof ObjectTracker::proofOf(const Track& track, const MotionTests& tests, double stamp, const Segment& segment) const {
+  if (!isThin(segment, sensor_) && !tests.hangs(segment)) {
     if (track.receding_scans >= kScansToBelieve) return Proof::kRearReceded;
     if (track.moving_scans >= kScansToBelieve) return Proof::kShapeElsewhere;
     if (track.advancing_scans >= kScansToBelieve) return Proof::kEndsMoved;
-    if (isNew(segment, config_)) return Proof::kEnteredFree;
+    if (isNew(segment, config_) && !isNewOverhead(segment, sensor_)) return Proof::kEnteredFree;
   }
   const bool just_stopped =
       track.dynamic && !isMostlySettled(segment) && stamp - track.last_motion <= config_.stop_time;
   return just_stopped ? Proof::kMovedBefore : Proof::kNone;
 }
 
-Verdict ObjectTracker::decide(Track& track, double stamp, const Segment& segment) const {
-  const Proof proof = proofOf(track, stamp, segment);
+Verdict ObjectTracker::decide(Track& track, const MotionTests& tests, double stamp, const Segment& segment) const {
+  const Proof proof = proofOf(track, tests, stamp, segment);
   const bool is_proven_now = proof != Proof::kNone && proof != Proof::kMovedBefore;
   if (track.receding_scans >= kScansToBelieve || track.moving_scans >= kScansToBelieve) track.last_moved_whole = stamp;
   if (is_proven_now) track.last_motion = stamp;

@@ -59,8 +59,8 @@ class ObjectTracker {
   Track& trackOf(std::size_t segment_index, double stamp, const Segment& segment);
   static void follow(Track& track, double stamp, const Segment& segment);
   void testMotion(Track& track, const MotionTests& tests, double stamp, const Segment& segment) const;
-  Proof proofOf(const Track& track, double stamp, const Segment& segment) const;
-  Verdict decide(Track& track, double stamp, const Segment& segment) const;
+  Proof proofOf(const Track& track, const MotionTests& tests, double stamp, const Segment& segment) const;
+  Verdict decide(Track& track, const MotionTests& tests, double stamp, const Segment& segment) const;
   static void complete(const Segments& segments, const Predictions& predictions, Verdicts& verdicts);
   void describe(const Track& track, Proof proof, const JudgedScan& scan, const Segment& segment);
 

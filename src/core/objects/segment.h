@@ -22,7 +22,11 @@ struct Segment {
 
   std::pmr::vector<std::uint32_t> echoes;  ///< indices into the scan
   int new_echoes = 0;
+  int surely_new_echoes = 0;  ///< of new_echoes
+  int surface_echoes = 0;
   int settled_echoes = 0;
+  float lowest = 0.0F;                          ///< height above ground [m]; 0 where no ground is known
+  float lowest_new = 0.0F, highest_new = 0.0F;  ///< the same of its new echoes
   Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();  ///< odometry frame [m]
   bool cut_out = false;  ///< cut from a larger cluster where a moving object was predicted
 
@@ -107,6 +111,13 @@ bool isMostlySettled(const Segment& segment);
 
 /// Enough of the segment is new, by number and against what is settled.
 bool isNew(const Segment& segment, const ObjectConfig& config);
+
+/// All that is new of it lies above people's heads and is no higher than a beam or two: an eave, a branch, a cable.
+/// `sensor` in the odometry frame.
+bool isNewOverhead(const Segment& segment, const Eigen::Vector3d& sensor);
+
+/// Not a patch of ground or a roof, whose shape fits wherever it is shifted along itself.
+bool isUpright(const Segment& segment);
 
 /// Near, and yet hardly higher than a beam: an edge, a wire, a branch. `sensor` in the odometry frame.
 bool isThin(const Segment& segment, const Eigen::Vector3d& sensor);

@@ -56,7 +56,7 @@ void Trimmer::count(const JudgedScan& scan, const Segment& segment) {
     Part& part = parts_[static_cast<std::size_t>(clusters_.of(echo))];
     ++part.echoes;
     part.settled += scan.places[echo] == Place::kSettled ? 1U : 0U;
-    part.is_new = part.is_new || scan.places[echo] == Place::kNew;
+    part.is_new = part.is_new || isNewPlace(scan.places[echo]);
   }
 }
 

@@ -47,7 +47,11 @@ SightView::Evidence SightView::ask(const Eigen::Vector3f& point, double since, i
   for (std::size_t i = 0; i < count_ && kept_[i].stamp > since; ++i) {
     switch (kept_[i].sight.at(point)) {
       case SightImage::Sight::kFree: ++evidence.free; break;
-      case SightImage::Sight::kSurface: ++evidence.surface; break;
+      case SightImage::Sight::kSurface:
+        ++evidence.surface;
+        evidence.stale_surface += evidence.free > 0 ? 1 : 0;
+        evidence.lasting_surface += kept_[0].stamp - kept_[i].stamp >= Evidence::kApproach ? 1 : 0;
+        break;
       case SightImage::Sight::kHidden: ++evidence.hidden; break;
       case SightImage::Sight::kUnknown: break;
     }

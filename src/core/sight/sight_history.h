@@ -38,9 +38,14 @@ class ScanSight {
 class SightView {
  public:
   struct Evidence {
-    int free = 0;     ///< scans that saw through the place
-    int surface = 0;  ///< scans that saw a surface there
-    int hidden = 0;   ///< scans that saw something before it
+    int free = 0;             ///< scans that saw through the place
+    int surface = 0;          ///< scans that saw a surface there
+    int hidden = 0;           ///< scans that saw something before it
+    int stale_surface = 0;    ///< of `surface`: before the newest scan that saw through
+    int lasting_surface = 0;  ///< of `surface`: at least kApproach before the newest scan
+
+    /// What comes at walking pace is within the margin of a place for so long before it hits it [s].
+    static constexpr double kApproach = 0.45;
   };
 
   /// What the scans later than `since` [s] saw at `point`; stops early once `enough` of them saw it free.

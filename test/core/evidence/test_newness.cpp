@@ -33,11 +33,11 @@ class AgainstThePlainRules : public ::testing::TestWithParam<Case> {
   }
 
   template <class Newness, class Oracle>
-  std::array<int, 4> compare() {
+  std::array<int, 5> compare() {
     Rig<Newness> rig(config());
     Oracle oracle(config());
     RestlessRoom room(GetParam().switches + 100U, GetParam().moves);
-    std::array<int, 4> places{};
+    std::array<int, 5> places{};
     int different = 0;
     for (int k = 0; k < 30 && different == 0; ++k) {
       const Scan scan = room.next();
@@ -55,8 +55,8 @@ class AgainstThePlainRules : public ::testing::TestWithParam<Case> {
   }
 };
 
-void expectAllKinds(const std::array<int, 4>& places, bool neighbourhood) {
-  for (const Place place : {Place::kUnobserved, Place::kNew, Place::kSettled}) {
+void expectAllKinds(const std::array<int, 5>& places, bool neighbourhood) {
+  for (const Place place : {Place::kUnobserved, Place::kSurelyNew, Place::kSettled}) {
     EXPECT_GT(places[static_cast<std::size_t>(place)], 30);
   }
   EXPECT_EQ(places[static_cast<std::size_t>(Place::kAtSurface)] > 30, neighbourhood);
@@ -107,7 +107,7 @@ TYPED_TEST(Newnesses, WhatComesIntoFreeSpaceIsNewUntilItsBirthWindowIsOver) {
   for (int k = 0; k < 10; ++k) rig.first(ahead(0.125 * k));
   for (int k = 10; k <= 30; ++k) {
     const bool young = 0.125 * (k - 10) <= 1.0;
-    EXPECT_EQ(rig.first(ahead(0.125 * k, 6.0)), young ? Place::kNew : Place::kSettled) << "scan " << k;
+    EXPECT_EQ(rig.first(ahead(0.125 * k, 6.0)), young ? Place::kSurelyNew : Place::kSettled) << "scan " << k;
   }
 }
 
@@ -116,7 +116,7 @@ TYPED_TEST(Newnesses, WithoutAnAgeOnlyTheScanOfBirthIsNew) {
   config.evidence.birth_age = false;
   Rig<TypeParam> rig(config);
   for (int k = 0; k < 10; ++k) rig.first(ahead(0.125 * k));
-  EXPECT_EQ(rig.first(ahead(2.0, 6.0)), Place::kNew);
+  EXPECT_EQ(rig.first(ahead(2.0, 6.0)), Place::kSurelyNew);
   EXPECT_EQ(rig.first(ahead(2.125, 6.0)), Place::kSettled);
 }
 
@@ -127,7 +127,7 @@ TYPED_TEST(Newnesses, NeverHitIsNewOnlyWithoutFreeEvidence) {
     Rig<TypeParam> rig(config);
     EXPECT_EQ(rig.first(ahead(0.0, 6.0)), Place::kUnobserved) << "nothing is new in the first scan";
     // Behind what was seen: hidden before, never seen free.
-    EXPECT_EQ(rig.first(ahead(0.1, 9.0)), free_evidence ? Place::kUnobserved : Place::kNew);
+    EXPECT_EQ(rig.first(ahead(0.1, 9.0)), free_evidence ? Place::kUnobserved : Place::kSurelyNew);
   }
 }
 
@@ -146,7 +146,7 @@ TYPED_TEST(Newnesses, ASettledPlaceIsForgottenOnlyByEnoughScansThatSeeThrough) {
     double stamp = 0.0;
     for (int k = 0; k < 10; ++k) rig.first(ahead(stamp += 0.1, 6.0));
     for (int k = 0; k < through; ++k) rig.first(ahead(stamp += 0.1, 10.0));
-    const Place expected = through >= config.evidence.settled_free_scans ? Place::kNew : Place::kSettled;
+    const Place expected = through >= config.evidence.settled_free_scans ? Place::kSurelyNew : Place::kSettled;
     EXPECT_EQ(rig.first(ahead(stamp += 0.1, 6.0)), expected) << through << " scans saw through";
   }
 }
@@ -168,7 +168,7 @@ TYPED_TEST(Newnesses, TheFlickerOfASurfaceIsNotNew) {
     double stamp = 0.0;
     for (int k = 0; k < 10; ++k) rig.first(ahead(stamp += 0.1, 10.05));
     for (int k = 0; k < 3; ++k) {  // and it stays what it was
-      EXPECT_EQ(rig.first(ahead(stamp += 0.1, 9.95)), neighbourhood ? Place::kAtSurface : Place::kNew) << k;
+      EXPECT_EQ(rig.first(ahead(stamp += 0.1, 9.95)), neighbourhood ? Place::kAtSurface : Place::kSurelyNew) << k;
     }
   }
 }
