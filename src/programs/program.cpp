@@ -11,11 +11,8 @@
 
 #include "core/timing.h"
 #include "io/config_file.h"
-<<<<<<< HEAD
 #include "io/number_text.h"
-=======
 #include "io/outputs.h"
->>>>>>> 0ac280f (Outputs: no program writes over what is there without --overwrite, nor over an input by whatever path or link; parts of a recording need --out)
 
 namespace donex {
 namespace {

@@ -143,13 +143,15 @@ class Newness2d : public Newness {
     if (cell.hits.empty() || cell.hits.back() != now()) age(cell);
     const int before = cell.hits.size() > 1 ? cell.hits[cell.hits.size() - 2] : kNever;
     const bool missed = before < now() - 1;
+    Look left;  // since the last hit of what was settled and is gone
     if (cell.settled.holds(height)) {
-      if (!(missed && look(before_scan, point, stampOf(before), true).free)) return Place::kSettled;
+      if (missed) left = look(before_scan, point, stampOf(before), true);
+      if (!left.free) return Place::kSettled;
       cell.settled = HeightRange{};
     }
     if (cell.arrived.holds(height)) return arrivedPlace(cell, height);
     if (cell.found.holds(height) && !missed) return foundPlace(cell, height);
-    const Look seen = lookAtUnknown(before_scan, point);
+    const Look seen = left.free ? left : lookAtUnknown(before_scan, point);
     const bool touches = seen.free && config_.neighbourhood && touchesSettled(position, height);
     const bool comes = seen.free && !touches;
     HeightRange& range = comes ? cell.arrived : cell.found;

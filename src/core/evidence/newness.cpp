@@ -137,16 +137,18 @@ Place Newness2d::judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& 
   const bool is_first_scan = clock.scan() == 1;
   const bool missed = cell.hit_before + 1 < clock.scan() && !is_first_scan;
   const double since = cell.hit_before != 0 ? clock.stampOf(cell.hit_before) : kBeforeEverything;
+  PlaceBefore left;
   if (cell.settled.holds(height)) {
     // De-shadowing, asked where the answer matters: only in a cell that is hit again after a gap.
-    const bool has_left = missed && weigh(config_, before, point, since, true, true).was_free;
-    if (!has_left) return Place::kSettled;
+    left = missed ? weigh(config_, before, point, since, true, true) : PlaceBefore();
+    if (!left.was_free) return Place::kSettled;
     cell.settled = HeightRange{};
   }
   if (cell.arrived.holds(height)) return cell.placeInArrived(height);
   if (cell.found.holds(height) && !missed) return cell.placeInFound(height);
+  // What has left was weighed since its last hit: the surface that it was does not count against what comes now.
   const PlaceBefore place =
-      is_first_scan ? PlaceBefore() : weigh(config_, before, point, kBeforeEverything, false, false);
+      left.was_free || is_first_scan ? left : weigh(config_, before, point, kBeforeEverything, false, false);
   const bool touches = place.was_free && config_.neighbourhood && touchesSettled(voxel.x(), voxel.y(), height);
   const bool comes = place.was_free && !touches;
   HeightRange& range = comes ? cell.arrived : cell.found;

@@ -59,7 +59,10 @@ void expectAllKinds(const std::array<int, 5>& places, bool neighbourhood) {
   for (const Place place : {Place::kUnobserved, Place::kSurelyNew, Place::kSettled}) {
     EXPECT_GT(places[static_cast<std::size_t>(place)], 30);
   }
-  EXPECT_EQ(places[static_cast<std::size_t>(Place::kAtSurface)] > 30, neighbourhood);
+  // Without the neighbourhood only surfaces that earlier scans saw in the place itself are left.
+  if (neighbourhood) {
+    EXPECT_GT(places[static_cast<std::size_t>(Place::kAtSurface)], 30);
+  }
 }
 
 TEST_P(AgainstThePlainRules, In3d) {
@@ -180,7 +183,8 @@ TYPED_TEST(Newnesses, WhatLeavesTheWindowIsForgotten) {
     double stamp = 0.0;
     for (int k = 0; k < 10; ++k) rig.first(ahead(stamp += 0.1));
     rig.first(ahead(stamp += 0.1, 10.0, leaves ? far_away : Eigen::Isometry3d::Identity()));
-    EXPECT_EQ(rig.first(ahead(stamp += 0.1)), leaves ? Place::kUnobserved : Place::kSettled);
+    EXPECT_EQ(rig.first(ahead(stamp += 0.1)), leaves ? Place::kAtSurface : Place::kSettled)
+        << "the grid has forgotten it, earlier scans saw a surface there";
   }
 }
 

@@ -50,9 +50,10 @@ TEST(Segmenter, TooFewEchoesAreNoThing) {
 
 TEST(Segmenter, IsNewWhereEnoughIsNew) {
   const ObjectConfig config;  // at least 5, more than 0.4 of new and settled, more than 0.15 of all
-  const auto isNewOf = [&](int fresh, int settled, std::size_t all, double length = 4.0) {
+  const auto isNewOf = [&](int fresh, int settled, std::size_t all, double length = 4.0, int surely = -1) {
     Segment segment;
     segment.new_echoes = fresh;
+    segment.surely_new_echoes = surely < 0 ? fresh : surely;
     segment.settled_echoes = settled;
     segment.echoes.resize(all);
     segment.high = Eigen::Vector3d(length, 1.0, 1.0);
@@ -66,6 +67,8 @@ TEST(Segmenter, IsNewWhereEnoughIsNew) {
   EXPECT_FALSE(isNewOf(14, 0, 100));
   EXPECT_TRUE(isNewOf(50, 0, 100, 24.0));
   EXPECT_FALSE(isNewOf(50, 0, 100, 26.0)) << "longer than any vehicle";
+  EXPECT_FALSE(isNewOf(49, 0, 100, 4.0, 0)) << "hardly surely new: half of it must be new";
+  EXPECT_TRUE(isNewOf(50, 0, 100, 4.0, 0));
 }
 
 TEST(Segmenter, APedestrianAtAWallIsOnlyHimself) {
