@@ -114,12 +114,11 @@ struct Reached {
   double iou, precision;
 };
 
-/// The precision of the two drives below is the known weakness of the labels (docs, results): these bounds only notice
-/// when it gets worse.
+/// The precision of kitti_0001 is the known weakness of the labels (docs/results.md): its bounds only notice when it
+/// gets worse.
 Reached leastOf(const std::string& drive) {
   const std::string name = std::filesystem::path(drive).filename().string();
-  if (name == "kitti_0001") return {100, 0.05, 0.05};
-  if (name == "hdl32e_campus") return {1000, 0.12, 0.12};
+  if (name == "kitti_0001") return {100, 0.30, 0.32};
   return {1000, 0.93, 0.98};
 }
 
