@@ -35,6 +35,7 @@ class Newness {
   bool isYoung(int birth, bool was_free) const {
     return stampOf(birth) >= stamps_.back() - (was_free ? new_window_ : found_window_);
   }
+  bool isRecent(int scan) const { return stampOf(scan) >= stamps_.back() - 0.35; }
   /// What earlier scans say of a place. With free evidence scans are weighed: free ones must be more than twice the
   /// surfaces seen before the newest of them, and no fewer than the surfaces seen long ago.
   struct Look {
@@ -108,12 +109,12 @@ class Newness3d : public Newness {
     return {now(), now(), seen.free, seen.surely, touches || seen.surface};
   }
 
-  /// A surface that was hit in one of the last four scans.
+  /// A surface that was hit lately.
   bool touchesSettled(const Voxel& voxel) const {
     for (const auto& [other, state] : voxels_) {
       int apart = 0;
       for (std::size_t axis = 0; axis < 3; ++axis) apart = std::max(apart, std::abs(other[axis] - voxel[axis]));
-      if (apart == 1 && !isYoung(state.birth, state.was_free) && state.last_hit > now() - 4) return true;
+      if (apart == 1 && !isYoung(state.birth, state.was_free) && isRecent(state.last_hit)) return true;
     }
     return false;
   }

@@ -1,7 +1,6 @@
 #include "core/evidence/ground.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -13,30 +12,18 @@
 namespace donex {
 namespace {
 
-constexpr float kCell = 0.8F;        // [m]
-constexpr int kReach = 2;            // cells over which the ground is continued
-constexpr float kRoughness = 0.15F;  // [m] ground may fall this much from cell to cell anyway: kerbs
-constexpr float kSlope = 0.08F;      // and this much a metre since it was last seen
-// It may rise less: where a vehicle hides the ground, its sill is the lowest echo.
-constexpr float kKerb = 0.14F;  // [m]
-constexpr float kRise = 0.03F;
-constexpr float kLargestStep = 0.4F;       // [m] never more
-constexpr float kStartUncertainty = 4.0F;  // [m] as if the ground had been seen last this far away
-constexpr float kStartRadius = 7.0F;       // [m] the cells in it tell where the ground starts,
-constexpr std::size_t kStartCells = 24;    // but never fewer than these
-constexpr std::array<float, 3> kStartReach = {0.6F, 0.3F, 0.15F};  // [m] off the plane so far
-constexpr double kLevelling = 50.0;                                // [m^2] as if so much spoke for level ground
+constexpr int kReach = 2;  // cells over which the ground is continued; a bit per neighbour, see Cell::nearer
 constexpr float kNone = std::numeric_limits<float>::infinity();
 
 /// The number of every echo's cell, or -1 outside the map.
-DONEX_WIDE_LOOPS void findCells(const Eigen::Vector3f& sensor, int width, const Eigen::Vector3f* echoes,
+DONEX_WIDE_LOOPS void findCells(const Eigen::Vector3f& sensor, float cell, int width, const Eigen::Vector3f* echoes,
                                 std::size_t count, int* cells) {
   const float sensor_x = sensor.x(), sensor_y = sensor.y();
   const auto* xyz = reinterpret_cast<const float*>(echoes);
   const int middle = width / 2;
   for (std::size_t i = 0; i < count; ++i) {
-    const float across = std::floor((xyz[3 * i] - sensor_x) / kCell + 0.5F);
-    const float along = std::floor((xyz[3 * i + 1] - sensor_y) / kCell + 0.5F);
+    const float across = std::floor((xyz[3 * i] - sensor_x) / cell + 0.5F);
+    const float along = std::floor((xyz[3 * i + 1] - sensor_y) / cell + 0.5F);
     const auto half = static_cast<float>(middle);
     const bool inside =
         static_cast<int>(std::abs(across) <= half) & static_cast<int>(std::abs(along) <= half);  // not NaN
@@ -48,9 +35,11 @@ DONEX_WIDE_LOOPS void findCells(const Eigen::Vector3f& sensor, int width, const 
 
 }  // namespace
 
-int Ground::widthOf(double reach) { return 2 * static_cast<int>(std::ceil(reach / static_cast<double>(kCell))) + 1; }
+int Ground::widthOf(double reach, float cell) {
+  return 2 * static_cast<int>(std::ceil(reach / static_cast<double>(cell))) + 1;
+}
 
-Ground::Ground(double reach) : width_(widthOf(reach)) {
+Ground::Ground(double reach, const GroundOptions& options) : options_(options), width_(widthOf(reach, options.cell)) {
   const auto cells = static_cast<std::size_t>(width_) * static_cast<std::size_t>(width_);
   lowest_.resize(cells);
   ground_.resize(cells, kNone);
@@ -58,7 +47,7 @@ Ground::Ground(double reach) : width_(widthOf(reach)) {
   outwards_.reserve(cells);
   for (int y = -kReach; y <= kReach; ++y) {
     for (int x = -kReach; x <= kReach; ++x) {
-      around_.push_back({x, y, y * width_ + x, kCell * std::sqrt(static_cast<float>(x * x + y * y)), 0.0F});
+      around_.push_back({x, y, y * width_ + x, options_.cell * std::sqrt(static_cast<float>(x * x + y * y)), 0.0F});
     }
   }
   for (int y = -(width_ / 2); y <= width_ / 2; ++y) {
@@ -81,7 +70,7 @@ std::uint32_t Ground::neighboursNearerTo(int x, int y) const {
   return nearer;
 }
 
-Eigen::Vector2f Ground::offsetOf(const Cell& cell) { return kCell * Eigen::Vector2f(cell.x, cell.y); }
+Eigen::Vector2f Ground::offsetOf(const Cell& cell) const { return options_.cell * Eigen::Vector2f(cell.x, cell.y); }
 
 void Ground::estimate(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
                       const std::vector<std::uint8_t>& is_echo) {
@@ -89,7 +78,7 @@ void Ground::estimate(const Eigen::Vector3f& sensor, const std::vector<Eigen::Ve
   std::fill(lowest_.begin(), lowest_.end(), kNone);
   std::fill(ground_.begin(), ground_.end(), kNone);
   resizeTo(cell_of_, echoes.size());
-  findCells(sensor_, width_, echoes.data(), echoes.size(), cell_of_.data());
+  findCells(sensor_, options_.cell, width_, echoes.data(), echoes.size(), cell_of_.data());
   for (std::size_t i = 0; i < echoes.size(); ++i) {
     if (is_echo[i] == 0 || cell_of_[i] < 0) continue;
     float& lowest = lowest_[static_cast<std::size_t>(cell_of_[i])];
@@ -98,13 +87,13 @@ void Ground::estimate(const Eigen::Vector3f& sensor, const std::vector<Eigen::Ve
   if (!findStart()) return;
   // The slope around the sensor goes on.
   for (Neighbour& by : around_) {
-    by.climb = kCell * (start_.x() * static_cast<float>(by.x) + start_.y() * static_cast<float>(by.y));
+    by.climb = options_.cell * (start_.x() * static_cast<float>(by.x) + start_.y() * static_cast<float>(by.y));
   }
   for (const Cell& cell : outwards_) {
     const std::size_t i = indexOf(cell.x, cell.y);
     const Continuation expected = continueTo(cell);
-    const float down = std::min(kRoughness + kSlope * expected.unseen, kLargestStep);
-    const float rise = std::min(kKerb + kRise * expected.unseen, kLargestStep);
+    const float down = std::min(options_.roughness + options_.fall * expected.unseen, options_.largest_step);
+    const float rise = std::min(options_.kerb + options_.rise * expected.unseen, options_.largest_step);
     const float step = lowest_[i] - expected.height;
     const bool continues = step > -down && step < rise;
     ground_[i] = continues ? lowest_[i] : expected.height;
@@ -114,9 +103,9 @@ void Ground::estimate(const Eigen::Vector3f& sensor, const std::vector<Eigen::Ve
 
 bool Ground::findStart() {
   near_.clear();
-  constexpr auto kRadius = static_cast<int>(kStartRadius / kCell);
+  const auto radius = static_cast<int>(options_.start_radius / options_.cell);
   for (const Cell& cell : outwards_) {
-    const bool enough = near_.size() >= kStartCells && cell.squaredDistance() > kRadius * kRadius;
+    const bool enough = near_.size() >= options_.start_cells && cell.squaredDistance() > radius * radius;
     if (enough) break;
     const float lowest = lowest_[indexOf(cell.x, cell.y)];
     const Eigen::Vector2f offset = offsetOf(cell);
@@ -128,13 +117,13 @@ bool Ground::findStart() {
   std::nth_element(near_.begin(), third, near_.end(), [](const auto& a, const auto& b) { return a.z() < b.z(); });
   start_ = Eigen::Vector3f(0.0F, 0.0F, third->z());
   // On a slope that is a height among many: a plane through what lies near it, then nearer, follows.
-  for (const float reach : kStartReach) start_ = fitStart(reach);
+  for (const float reach : options_.start_reach) start_ = fitStart(reach);
   return true;
 }
 
 Eigen::Vector3f Ground::fitStart(float reach) const {
   // Least squares, drawn to level ground and to the height so far where little speaks for a plane.
-  Eigen::Matrix3d normal = Eigen::Vector3d(kLevelling, kLevelling, 1e-6).asDiagonal();
+  Eigen::Matrix3d normal = Eigen::Vector3d(options_.levelling, options_.levelling, 1e-6).asDiagonal();
   Eigen::Vector3d right = 1e-6 * start_.cast<double>();
   for (const Eigen::Vector3f& cell : near_) {
     if (std::abs(cell.z() - startAt(cell.head<2>())) > reach) continue;
@@ -158,12 +147,12 @@ Ground::Continuation Ground::continueTo(const Cell& cell) const {
     unseen = std::min(unseen, since_seen);
   }
   if (weights > 0.0F) return {sum / weights, unseen};
-  return {startAt(offsetOf(cell)), kStartUncertainty};
+  return {startAt(offsetOf(cell)), options_.start_uncertainty};
 }
 
 float Ground::heightOf(const Eigen::Vector3f& point) const {
   int cell = -1;
-  findCells(sensor_, width_, &point, 1, &cell);
+  findCells(sensor_, options_.cell, width_, &point, 1, &cell);
   return heightIn(cell, point.z());
 }
 
@@ -178,8 +167,8 @@ float Ground::heightIn(int cell, float z) const {
   return ground == kNone ? kNone : z - ground;
 }
 
-double Ground::bytesFor(double reach, double echoes) {
-  const double cells = std::pow(widthOf(reach), 2);
+double Ground::bytesFor(double reach, double echoes, const GroundOptions& options) {
+  const double cells = std::pow(widthOf(reach, options.cell), 2);
   return cells * (sizeof(Cell) + 3 * sizeof(float)) + roomFor(echoes * sizeof(int));
 }
 

@@ -1,6 +1,7 @@
 // The local ground: which echoes lie on it (algorithm: "Ground").
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -9,12 +10,26 @@
 
 namespace donex {
 
+struct GroundOptions {
+  float cell = 0.8F;          ///< of the height map: some echoes of a sparse sensor lie in each nearby [m]
+  float roughness = 0.15F;    ///< ground may fall this much from cell to cell anyway: kerbs [m]
+  float fall = 0.08F;         ///< and this much per metre since it was last seen
+  float kerb = 0.14F;         ///< it may rise less: where a vehicle hides the ground, its sill is the lowest echo [m]
+  float rise = 0.03F;         ///< and this much per metre since it was last seen
+  float largest_step = 0.4F;  ///< from cell to cell, however far away it was last seen [m]
+  float start_uncertainty = 4.0F;  ///< around the sensor, as if the ground had been seen last this far away [m]
+  float start_radius = 7.0F;       ///< the cells in it tell where the ground starts [m],
+  std::size_t start_cells = 24;    ///< but never fewer than these
+  std::array<float, 3> start_reach = {0.6F, 0.3F, 0.15F};  ///< off the plane so far, one fit after another [m]
+  double levelling = 50.0;                                 ///< as if so much spoke for level ground [m^2]
+};
+
 /// A height map of one scan. Cells take their lowest echo where it continues the ground of the cells
 /// nearer to the sensor, and their neighbours' height where it does not: then the cell holds an object only.
 class Ground {
  public:
   /// A square of `reach` [m] around the sensor.
-  explicit Ground(double reach);
+  explicit Ground(double reach, const GroundOptions& options = {});
 
   /// `echoes` [m] in a frame whose z points up; those with `is_echo` 0 are left out.
   void estimate(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
@@ -28,7 +43,7 @@ class Ground {
 
   std::size_t memoryBytes() const;
   /// What memoryBytes will be, for scans of so many echoes [bytes].
-  static double bytesFor(double reach, double echoes);
+  static double bytesFor(double reach, double echoes, const GroundOptions& options = {});
 
  private:
   struct Cell {
@@ -43,15 +58,15 @@ class Ground {
     float climb;            ///< how far the plane around the sensor rises to it [m]
   };
 
-  static int widthOf(double reach);
+  static int widthOf(double reach, float cell);
   std::size_t indexOf(int x, int y) const {
     const int middle = width_ / 2;
     return static_cast<std::size_t>(y + middle) * static_cast<std::size_t>(width_) +
            static_cast<std::size_t>(x + middle);
   }
   float heightIn(int cell, float z) const;
-  static Eigen::Vector2f offsetOf(const Cell& cell);  ///< from the sensor's cell [m]
-  bool findStart();                                   ///< false where no echo is near
+  Eigen::Vector2f offsetOf(const Cell& cell) const;  ///< from the sensor's cell [m]
+  bool findStart();                                  ///< false where no echo is near
   Eigen::Vector3f fitStart(float reach) const;
   /// As Cell::nearer.
   std::uint32_t neighboursNearerTo(int x, int y) const;
@@ -64,6 +79,7 @@ class Ground {
   };
   Continuation continueTo(const Cell& cell) const;
 
+  GroundOptions options_;
   int width_;  ///< cells along an edge
   Eigen::Vector3f sensor_ = Eigen::Vector3f::Zero();
   std::vector<Cell> outwards_;  ///< by distance from the sensor

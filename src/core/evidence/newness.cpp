@@ -6,24 +6,22 @@
 namespace donex {
 namespace {
 
-constexpr double kFoundWindow = 0.5;  // [s]
 constexpr double kBeforeEverything = -std::numeric_limits<double>::infinity();
-/// A settled voxel counts as a neighbouring surface while it was hit within this many scans.
-constexpr std::uint32_t kRecentScans = 4;
 constexpr int kAllScans = std::numeric_limits<int>::max();
-/// Free scans that outweigh one that saw a surface before: a beam that grazes an edge is as often beside it as on it.
-constexpr int kStaleWeight = 2;
 
 }  // namespace
 
-ScanClock::ScanClock(double birth_window)
-    : new_window_(birth_window), found_window_(std::min(birth_window, kFoundWindow)) {}
+ScanClock::ScanClock(double birth_window, const ScanClockOptions& options)
+    : new_window_(birth_window),
+      found_window_(std::min(birth_window, options.found_window)),
+      recent_time_(options.recent_time) {}
 
 void ScanClock::begin(double stamp) {
   ++scan_;
   stamps_[scan_ % kRememberedStamps] = stamp;
   advance(new_since_, new_window_);
   advance(found_since_, found_window_);
+  advance(recent_since_, recent_time_);
 }
 
 void ScanClock::advance(std::uint32_t& since, double window) const {
@@ -32,7 +30,7 @@ void ScanClock::advance(std::uint32_t& since, double window) const {
 
 void ScanClock::reset() {
   scan_ = 0;
-  new_since_ = found_since_ = 1;
+  new_since_ = found_since_ = recent_since_ = 1;
 }
 
 double ScanClock::stampOf(std::uint32_t scan) const {
@@ -42,7 +40,7 @@ double ScanClock::stampOf(std::uint32_t scan) const {
 }
 
 PlaceBefore weigh(const EvidenceConfig& config, const SightView& before, const Eigen::Vector3f& point, double since,
-                  bool known, bool settled) {
+                  bool known, bool settled, const WeighingOptions& options) {
   if (!config.free_evidence && !known) return {true, true, false};  // the paper: never hit is new
   const int unsettled = config.free_evidence ? config.free_scans : 1;
   const int needed = settled && config.careful_sight ? config.settled_free_scans : unsettled;
@@ -52,7 +50,7 @@ PlaceBefore weigh(const EvidenceConfig& config, const SightView& before, const E
   }
   const SightView::Evidence seen = before.ask(point, since, kAllScans);
   // A surface that was seen before the last free scan did not come just now, and one that lasts did not at all.
-  const bool outweighs = seen.free > kStaleWeight * seen.stale_surface && seen.free >= seen.lasting_surface;
+  const bool outweighs = seen.free > options.stale_weight * seen.stale_surface && seen.free >= seen.lasting_surface;
   PlaceBefore place;
   place.was_free = seen.free >= needed && outweighs;
   place.surely_free = place.was_free && seen.free > seen.stale_surface + seen.hidden;
@@ -91,8 +89,8 @@ bool Newness3d::touchesSettled(const Index3& voxel, const ScanClock& clock) cons
         const Index3 neighbour = voxel + Index3(x, y, z);
         if (neighbour == voxel || !window().contains(neighbour)) continue;
         const VoxelRecord* record = memory_.find(neighbour);
-        const bool is_surface = record != nullptr && !clock.isYoung(record->birth, record->was_free) &&
-                                record->last_hit + kRecentScans > clock.scan();
+        const bool is_surface =
+            record != nullptr && !clock.isYoung(record->birth, record->was_free) && clock.isRecent(record->last_hit);
         if (is_surface) return true;
       }
     }

@@ -11,12 +11,17 @@
 
 namespace donex {
 
+struct ScanClockOptions {
+  double found_window = 0.5;  ///< what appears in unknown space and stays for so long was there before [s]
+  /// A settled voxel is a neighbouring surface while it was hit so lately: the three scans before, at 10 Hz [s].
+  double recent_time = 0.35;
+};
+
 /// The scans so far by number, and which births count as young.
 class ScanClock {
  public:
-  /// `birth_window` [s]: places that had been seen free settle after it; others after half a second at
-  /// most: what appears in unknown space and stays is an object that was there before.
-  explicit ScanClock(double birth_window);
+  /// `birth_window` [s]: places that had been seen free settle after it; others after the found window at most.
+  explicit ScanClock(double birth_window, const ScanClockOptions& options = {});
 
   /// Begins the next scan [s].
   void begin(double stamp);
@@ -24,6 +29,7 @@ class ScanClock {
 
   std::uint32_t scan() const { return scan_; }  ///< 1 for the first
   bool isYoung(std::uint32_t birth, bool was_free) const { return birth >= (was_free ? new_since_ : found_since_); }
+  bool isRecent(std::uint32_t scan) const { return scan >= recent_since_; }
   /// Stamp of a scan [s], as far as they are remembered; earlier scans count as before everything.
   double stampOf(std::uint32_t scan) const;
 
@@ -32,9 +38,10 @@ class ScanClock {
 
   void advance(std::uint32_t& since, double window) const;
 
-  double new_window_, found_window_;  ///< [s]
+  double new_window_, found_window_, recent_time_;  ///< [s]
   std::uint32_t scan_ = 0;
   std::uint32_t new_since_ = 1, found_since_ = 1;   ///< oldest births that are young
+  std::uint32_t recent_since_ = 1;                  ///< oldest scan that is recent
   std::array<double, kRememberedStamps> stamps_{};  ///< [s] by scan, modulo their number
 };
 
@@ -119,9 +126,14 @@ struct PlaceBefore {
   bool surface = false;      ///< not free: a surface was seen there for longer than anything takes to come
 };
 
+struct WeighingOptions {
+  /// Free scans that outweigh one that saw a surface before: a beam that grazes an edge is as often beside it as on it.
+  int stale_weight = 2;
+};
+
 /// Weighs what the scans since `since` [s] saw at `point`. `known`: the place is remembered, so it is forgotten only by
 /// being seen through; `settled`: careful sight wants more scans for it.
 PlaceBefore weigh(const EvidenceConfig& config, const SightView& before, const Eigen::Vector3f& point, double since,
-                  bool known, bool settled);
+                  bool known, bool settled, const WeighingOptions& options = {});
 
 }  // namespace donex

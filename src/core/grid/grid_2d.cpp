@@ -8,7 +8,7 @@
 namespace donex {
 namespace {
 
-constexpr int kAhead = 16;  // cells are asked of memory so many echoes before they are needed
+constexpr int kCellsAhead = 16;  // cells are asked of memory so many echoes before they are needed
 
 }  // namespace
 
@@ -111,7 +111,7 @@ void Grid2d::judge(Part& part, std::size_t first, const EchoBlock& block, EchoLa
   std::array<int, EchoBlock::kSize + 1> new_echoes;  // not set: a block's worth of it is written each time
   int new_count = 0;
   for (int i = 0; i < block.count; ++i) {
-    if (i + kAhead < EchoBlock::kSize) __builtin_prefetch(&cells_[at.slot[i + kAhead]], 1);
+    if (i + kCellsAhead < EchoBlock::kSize) __builtin_prefetch(&cells_[at.slot[i + kCellsAhead]], 1);
     const HeightRange& remembered = cells_[at.slot[i]].remembered;
     HeightRange& taken = taken_of(at.slot[i]);
     const float height = block.z[i] + lift;
@@ -132,7 +132,7 @@ void Grid2d::judge(Part& part, std::size_t first, const EchoBlock& block, EchoLa
 void Grid2d::takeOver(Part& part) {
   Part& all = parts_.front();
   for (std::size_t i = 0; i < part.hit_count; ++i) {
-    if (i + kAhead < part.hit_count) __builtin_prefetch(&cells_[part.hit[i + kAhead]], 1);
+    if (i + kCellsAhead < part.hit_count) __builtin_prefetch(&cells_[part.hit[i + kCellsAhead]], 1);
     const std::uint32_t slot = part.hit[i];
     HeightRange& taken = cells_[slot].taken;
     if (taken.empty()) all.hit[all.hit_count++] = slot;

@@ -10,7 +10,7 @@ namespace donex {
 namespace {
 
 /// The vehicle may lean this far before echoes at the region's far end leave a scrolling grid [sin].
-constexpr double kLargestTilt = 0.17;  // 10 degrees
+constexpr double kLargestVehicleTilt = 0.17;  // 10 degrees
 
 int floorToBrick(double voxels) {
   return GridWindow::kBrick * static_cast<int>(std::floor(voxels / GridWindow::kBrick));
@@ -19,7 +19,7 @@ int floorToBrick(double voxels) {
 /// The region, as a box around the vehicle in which it stays however the vehicle turns [m].
 Region sweptRegion(const Region& r) {
   const double reach = reachOf(r);
-  const double rise = kLargestTilt * reach;
+  const double rise = kLargestVehicleTilt * reach;
   return {-reach, reach, -reach, reach, r.z_min - rise, r.z_max + rise};
 }
 

@@ -7,7 +7,7 @@ namespace donex {
 namespace {
 
 constexpr std::uint64_t kAll = ~std::uint64_t{0};
-constexpr int kAhead = 12;  // bricks are asked of memory so many echoes before they are needed
+constexpr int kBricksAhead = 12;  // bricks are asked of memory so many echoes before they are needed
 
 std::uint64_t maskOf(std::uint32_t bit) { return std::uint64_t{1} << bit; }
 
@@ -106,7 +106,7 @@ void VoxelMemory::hit(Part& part, std::size_t first, const EchoBlock& block, con
   std::array<int, EchoBlock::kSize + 1> new_echoes;  // not set: a block's worth of it is written each time
   int new_count = 0;
   for (int i = 0; i < block.count; ++i) {
-    if (i + kAhead < EchoBlock::kSize) __builtin_prefetch(&bricks_[at.slot[i + kAhead]], 1);
+    if (i + kBricksAhead < EchoBlock::kSize) __builtin_prefetch(&bricks_[at.slot[i + kBricksAhead]], 1);
     const std::uint64_t mask = maskOf(at.bit[i]);
     const bool is_new = (bricks_[at.slot[i]].remembered & mask) == 0;
     std::uint64_t& hit = hit_of(i);
@@ -132,9 +132,9 @@ void VoxelMemory::takeOver(Part& part) {
     if ((bricks_[at.slot].hit & maskOf(at.bit)) == 0) in_order.push_back(voxel);
   }
   for (std::size_t i = 0; i < part.touched.size(); ++i) {
-    if (i + kAhead < part.touched.size()) {
-      __builtin_prefetch(&bricks_[part.touched[i + kAhead].slot], 1);
-      __builtin_prefetch(&part.hit[part.touched[i + kAhead].slot], 1);
+    if (i + kBricksAhead < part.touched.size()) {
+      __builtin_prefetch(&bricks_[part.touched[i + kBricksAhead].slot], 1);
+      __builtin_prefetch(&part.hit[part.touched[i + kBricksAhead].slot], 1);
     }
     const Used& touched = part.touched[i];
     Brick& brick = bricks_[touched.slot];

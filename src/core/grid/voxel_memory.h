@@ -119,10 +119,10 @@ void VoxelMemory::hit(const Scan& scan, const Placement& placement, EchoLabels& 
 /// Bricks `first` to `last` (not included) of used_; those that stay come first then, and are counted.
 template <class Seen>
 std::size_t VoxelMemory::rememberSome(std::size_t first, std::size_t last, Seen& seen) {
-  constexpr std::size_t kAhead = 12;  // bricks are asked of memory so long before they are needed
+  constexpr std::size_t kBricksAhead = 12;  // bricks are asked of memory so long before they are needed
   std::size_t kept = first;
   for (std::size_t i = first; i < last; ++i) {
-    if (i + kAhead < last) __builtin_prefetch(&bricks_[used_[i + kAhead].slot], 1);
+    if (i + kBricksAhead < last) __builtin_prefetch(&bricks_[used_[i + kBricksAhead].slot], 1);
     const Used& used = used_[i];
     Brick& brick = bricks_[used.slot];
     const std::uint64_t candidates = brick.remembered & ~brick.hit;

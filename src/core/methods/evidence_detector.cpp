@@ -15,14 +15,16 @@
 namespace donex {
 namespace {
 
-constexpr float kLowestOfObjects = 0.07F;   // [m] from here up to the ground clearance echoes may belong to an object
 constexpr std::size_t kPrefetchAhead = 12;  // echoes; long enough for memory to answer
-constexpr double kHistorySpacing = 0.09;    // [s] a 10 Hz sensor's every scan, a 20 Hz sensor's every second
 
-SightHistory historyOf(const EvidenceConfig& e) {
-  constexpr double kRadians = kPi / 180.0;
-  return SightHistory(e.history_length, kHistorySpacing, static_cast<float>(e.sight_margin),
-                      {e.careful_sight, std::tan(e.sight_gap * kRadians)});
+struct EvidenceDetectorOptions {
+  float lowest_of_objects = 0.07F;  ///< from here up to the ground clearance echoes may belong to an object [m]
+  double history_spacing = 0.09;    ///< a 10 Hz sensor's every scan, a 20 Hz sensor's every second [s]
+};
+
+SightHistory historyOf(const EvidenceConfig& e, const EvidenceDetectorOptions& options) {
+  return SightHistory(e.history_length, options.history_spacing, static_cast<float>(e.sight_margin),
+                      {e.careful_sight, std::tan(e.sight_gap * kRadiansPerDegree)});
 }
 
 /// What both grids share; `PlaceJudge` is what differs between them.
@@ -33,7 +35,7 @@ class EvidenceDetector : public Detector {
       : config_(config),
         places_(config.scrolling()),  // births are times, which resampling would blur
         clock_(config.evidence.birth_age ? config.evidence.birth_window : 0.0),
-        sights_(historyOf(config.evidence)),
+        sights_(historyOf(config.evidence, options_)),
         ground_(reachOf(config.region)),
         segmenter_(reachOf(config.region), config.objects),
         tracker_(config.objects),
@@ -124,7 +126,7 @@ class EvidenceDetector : public Detector {
       const bool is_above = !enabled || height > clearance;
       if (is_above) {
         judged_.roles[i] = ClusterRole::kConnects;
-      } else if (height > kLowestOfObjects) {
+      } else if (height > options_.lowest_of_objects) {
         judged_.roles[i] = ClusterRole::kFollows;
       }
     }
@@ -165,6 +167,7 @@ class EvidenceDetector : public Detector {
   }
 
   Config config_;
+  EvidenceDetectorOptions options_;
   StreamGuard guard_;
   PlaceJudge places_;
   ScanClock clock_;
@@ -201,7 +204,7 @@ double evidenceBytes(const Config& config, double echoes) {
   const Eigen::Vector3d extent = GridWindow::extentOf(config.scrolling());
   double bytes = roomFor((kInGrid + kJudged) * echoes) + kDecided * echoes;
   bytes += config.method == Method::kDonex2d ? Newness2d::bytesFor(extent) : Newness3d::bytesFor(extent);
-  bytes += SightHistory::bytesFor(config.evidence.history_length, kHistorySpacing, echoes);
+  bytes += SightHistory::bytesFor(config.evidence.history_length, EvidenceDetectorOptions().history_spacing, echoes);
   bytes += Ground::bytesFor(reach, echoes);
   bytes += Segmenter::bytesFor(reach, config.objects, echoes) + Trimmer::bytesFor(reach, config.objects, echoes);
   return bytes + kObjects * echoes;

@@ -18,7 +18,7 @@
 namespace donex {
 namespace {
 
-constexpr int kScans = 10;             // over which the counters run
+constexpr int kCountedScans = 10;      // over which the counters run
 constexpr float kGround = 0.25F;       // above a region's plane an echo belongs to an obstacle [m]
 constexpr double kNeighbour = 0.6065;  // a Gaussian of one voxel, one voxel away
 constexpr double kLeastRatio = 0.0;    // of the counters, as a logarithm: more often free than occupied
@@ -72,8 +72,8 @@ class MotionVoxelGridDetector : public ComparisonDetector<Detector> {
     const auto found = hits_.find(keyOf(voxel));
     if (found == hits_.end()) return 0.0;
     const std::int64_t age = scan_ - found->second.last_scan;
-    constexpr std::uint64_t kWindow = (std::uint64_t{1} << kScans) - 1U;
-    if (age >= kScans) return 0.0;
+    constexpr std::uint64_t kWindow = (std::uint64_t{1} << kCountedScans) - 1U;
+    if (age >= kCountedScans) return 0.0;
     return static_cast<double>(std::bitset<64>(std::uint64_t{found->second.bits} << age & kWindow).count());
   }
 
@@ -84,21 +84,21 @@ class MotionVoxelGridDetector : public ComparisonDetector<Detector> {
       fixed += kNeighbour * (hitsOf(voxel + Index3::Unit(axis)) + hitsOf(voxel - Index3::Unit(axis)));
     }
     const Eigen::Vector3f center = (in_window.cast<float>().array() + 0.5F) * static_cast<float>(window().voxelSize());
-    const double dynamic = before.ask(center, -std::numeric_limits<double>::infinity(), kScans).free;
+    const double dynamic = before.ask(center, -std::numeric_limits<double>::infinity(), kCountedScans).free;
     return std::log((dynamic + 1.0) / (fixed + 1.0)) > kLeastRatio;
   }
 
   void count(VoxelKey key) {
     Hits& hits = hits_[key];
     const std::int64_t age = scan_ - hits.last_scan;
-    hits.bits = (age < kScans ? hits.bits << age : 0U) | 1U;
+    hits.bits = (age < kCountedScans ? hits.bits << age : 0U) | 1U;
     hits.last_scan = scan_;
   }
 
   void forgetOld() {
-    if (scan_ % kScans != 0) return;
+    if (scan_ % kCountedScans != 0) return;
     for (auto hits = hits_.begin(); hits != hits_.end();) {
-      hits = scan_ - hits->second.last_scan >= kScans ? hits_.erase(hits) : std::next(hits);
+      hits = scan_ - hits->second.last_scan >= kCountedScans ? hits_.erase(hits) : std::next(hits);
     }
   }
 

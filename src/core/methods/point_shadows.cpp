@@ -12,26 +12,26 @@
 namespace donex {
 namespace {
 
-constexpr int kColumns = 360, kRows = 180;  // bins of one degree
-constexpr double kBin = kPi / 180.0;
+constexpr int kShadowColumns = 360, kShadowRows = 180;  // bins of one degree
+constexpr double kBin = kRadiansPerDegree;
 constexpr float kUnset = std::numeric_limits<float>::infinity();
 
 int rowOf(double elevation) {
-  return std::clamp(static_cast<int>(std::floor((elevation + kPi / 2) / kBin)), 0, kRows - 1);
+  return std::clamp(static_cast<int>(std::floor((elevation + kPi / 2) / kBin)), 0, kShadowRows - 1);
 }
 int columnOf(double azimuth) {
-  return std::clamp(static_cast<int>(std::floor((azimuth + kPi) / kBin)), 0, kColumns - 1);
+  return std::clamp(static_cast<int>(std::floor((azimuth + kPi) / kBin)), 0, kShadowColumns - 1);
 }
-std::uint32_t binOf(int row, int column) { return static_cast<std::uint32_t>(row * kColumns + column); }
+std::uint32_t binOf(int row, int column) { return static_cast<std::uint32_t>(row * kShadowColumns + column); }
 double elevationOf(const Eigen::Vector3d& direction) { return std::asin(std::clamp(direction.z(), -1.0, 1.0)); }
 double azimuthOf(const Eigen::Vector3d& direction) { return std::atan2(direction.y(), direction.x()); }
 
 /// How many columns to each side hold all directions within `angle`; all of them where a pole is near.
 int columnsAround(double elevation, double angle) {
   const double room = kPi / 2 - std::abs(elevation);
-  if (angle >= room - kBin) return kColumns / 2;
+  if (angle >= room - kBin) return kShadowColumns / 2;
   const double widest = std::asin(std::sin(angle) / std::cos(elevation));
-  return std::min(static_cast<int>(std::ceil(widest / kBin)) + 1, kColumns / 2);
+  return std::min(static_cast<int>(std::ceil(widest / kBin)) + 1, kShadowColumns / 2);
 }
 
 }  // namespace
@@ -47,7 +47,7 @@ void PointShadows::sortByDirection(const std::vector<Eigen::Vector3f>& echoes,
   directions_.assign(count, Eigen::Vector3d::Zero());
   ranges_.assign(count, 0.0);
   bin_of_.assign(count, 0);
-  first_.assign(kColumns * kRows + 1, 0);
+  first_.assign(kShadowColumns * kShadowRows + 1, 0);
   by_range_.clear();
   for (std::uint32_t i = 0; i < count; ++i) {
     if (is_echo[i] == 0) continue;
@@ -70,10 +70,10 @@ void PointShadows::search(std::uint32_t echo, double angle) {
   const Eigen::Vector3d& center = directions_[echo];
   const double elevation = elevationOf(center), least_cosine = std::cos(angle);
   const int column = columnOf(azimuthOf(center)), around = columnsAround(elevation, angle);
-  const int last = std::min(around, kColumns / 2 - 1);  // no column twice
+  const int last = std::min(around, kShadowColumns / 2 - 1);  // no column twice
   for (int row = rowOf(elevation - angle - kBin); row <= rowOf(elevation + angle + kBin); ++row) {
     for (int step = -around; step <= last; ++step) {
-      const std::uint32_t bin = binOf(row, (column + step + kColumns) % kColumns);
+      const std::uint32_t bin = binOf(row, (column + step + kShadowColumns) % kShadowColumns);
       for (std::uint32_t at = first_[bin]; at < first_[bin + 1]; ++at) {
         if (directions_[sorted_[at]].dot(center) >= least_cosine) found_.push_back(sorted_[at]);
       }

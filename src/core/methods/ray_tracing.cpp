@@ -16,7 +16,7 @@
 namespace donex {
 namespace {
 
-constexpr std::size_t kScans = 5;         // earlier scans that may be asked
+constexpr std::size_t kAskedScans = 5;    // earlier scans that may be asked
 constexpr double kReliability = 0.9;      // of what a surface says
 constexpr double kEdgeReliability = 0.4;  // of what the corners on both sides of a step in depth say
 constexpr double kKnown = 0.5;            // the mass that must be known for a decision
@@ -85,7 +85,7 @@ class RayTracingDetector : public ComparisonDetector<Detector> {
   }
 
   void keep(const Scan& scan) {
-    if (kept_.size() == kScans) {
+    if (kept_.size() == kAskedScans) {
       kept_.push_front(std::move(kept_.back()));  // its mesh's storage is used again
       kept_.pop_back();
     } else {

@@ -10,12 +10,12 @@
 namespace donex {
 namespace {
 
-constexpr float kGate = 0.4F;         // from the expected plane to what may be ground [m]
-constexpr float kInlier = 0.15F;      // from the fitted plane [m]
-constexpr int kRounds = 4;            // of fitting and leaving out what is far from the fit
-constexpr std::size_t kLeast = 20;    // points that make a plane
-constexpr float kLargestTilt = 0.1F;  // between a plane and the one before [tan]
-constexpr float kLargestJump = 0.3F;  // at the border between them [m]
+constexpr float kGate = 0.4F;              // from the expected plane to what may be ground [m]
+constexpr float kInlier = 0.15F;           // from the fitted plane [m]
+constexpr int kRounds = 4;                 // of fitting and leaving out what is far from the fit
+constexpr std::size_t kLeast = 20;         // points that make a plane
+constexpr float kLargestPlaneTilt = 0.1F;  // between a plane and the one before [tan]
+constexpr float kLargestJump = 0.3F;       // at the border between them [m]
 
 }  // namespace
 
@@ -60,7 +60,8 @@ RegionPlanes::Plane RegionPlanes::fitRegion(const Points& points, const Plane& b
   }
   const float tilt = std::hypot(plane.slope_x - before.slope_x, plane.slope_y - before.slope_y);
   const Eigen::Vector3f at_border = border * points.front().normalized();
-  const bool continues = tilt <= kLargestTilt && std::abs(plane.at(at_border) - before.at(at_border)) <= kLargestJump;
+  const bool continues =
+      tilt <= kLargestPlaneTilt && std::abs(plane.at(at_border) - before.at(at_border)) <= kLargestJump;
   return continues ? plane : before;
 }
 

@@ -11,7 +11,7 @@
 namespace donex {
 namespace {
 
-constexpr int kColumns = 1800;         // 0.2 degrees: about what a sensor at 10 Hz has between two shots
+constexpr int kMeshColumns = 1800;     // 0.2 degrees: about what a sensor at 10 Hz has between two shots
 constexpr int kFarthestColumn = 3;     // a column without neighbours may be this many columns away
 constexpr float kLeastCosine = 0.03F;  // flatter than any ground in reach: a triangle across a step in depth
 constexpr float kRoom = 0.02F;         // by which the meeting point may leave the triangle's own ranges [share]
@@ -19,8 +19,8 @@ constexpr float kRoom = 0.02F;         // by which the meeting point may leave t
 float azimuthOf(const Eigen::Vector3f& p) { return std::atan2(p.y(), p.x()); }
 float elevationOf(const Eigen::Vector3f& p) { return std::atan2(p.z(), p.head<2>().norm()); }
 
-float columnsOf(float azimuth) { return (azimuth + kPiF) * (kColumns / (2.0F * kPiF)); }
-int wrapped(int column) { return (column % kColumns + kColumns) % kColumns; }
+float columnsOf(float azimuth) { return (azimuth + kPiF) * (kMeshColumns / (2.0F * kPiF)); }
+int wrapped(int column) { return (column % kMeshColumns + kMeshColumns) % kMeshColumns; }
 
 /// From one angle to another, in (-pi, pi].
 float turnTo(float to, float from) {
@@ -49,7 +49,7 @@ ScanMesh::Surface meet(const Eigen::Vector3f& direction, const Eigen::Vector3f& 
 }  // namespace
 
 void ScanMesh::build(const std::vector<Eigen::Vector3f>& echoes) {
-  first_.assign(kColumns + 1, 0);
+  first_.assign(kMeshColumns + 1, 0);
   column_of_.assign(echoes.size(), -1);
   for (std::size_t i = 0; i < echoes.size(); ++i) {
     const bool is_echo = echoes[i].allFinite() && echoes[i].head<2>().squaredNorm() > 0.0F;
@@ -66,7 +66,7 @@ void ScanMesh::build(const std::vector<Eigen::Vector3f>& echoes) {
     corner = {elevationOf(echoes[i]), azimuthOf(echoes[i]), echoes[i]};
   }
   const auto lower = [](const Corner& a, const Corner& b) { return a.elevation < b.elevation; };
-  for (std::size_t column = 0; column < kColumns; ++column) {
+  for (std::size_t column = 0; column < kMeshColumns; ++column) {
     std::stable_sort(corners_.begin() + static_cast<std::ptrdiff_t>(first_[column]),
                      corners_.begin() + static_cast<std::ptrdiff_t>(first_[column + 1]), lower);
   }

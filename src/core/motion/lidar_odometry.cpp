@@ -144,8 +144,8 @@ bool LidarOdometry::isUsual(const Registration& registration) const {
 }
 
 double LidarOdometry::fitnessOf(const Registration& registration) {
-  constexpr double kKernel = 0.15;  // [m]
-  return registration_.fitness(map_, source_, registration.map_from_sensor, kKernel, 1);
+  constexpr double kFitKernel = 0.15;  // [m]
+  return registration_.fitness(map_, source_, registration.map_from_sensor, kFitKernel, 1);
 }
 
 /// The best of many starts around the prediction, first in place, then in yaw.

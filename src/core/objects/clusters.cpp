@@ -7,10 +7,10 @@
 
 namespace donex {
 
-Clusters::Clusters(double reach, const Settings& settings)
-    : settings_(settings),
-      width_(widthOf(reach, settings.cell)),
-      layers_(static_cast<int>(std::ceil(settings.height / settings.cell)) + 1),
+Clusters::Clusters(double reach, const Options& options)
+    : options_(options),
+      width_(widthOf(reach, options.cell)),
+      layers_(static_cast<int>(std::ceil(options.height / options.cell)) + 1),
       column_at_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(width_), kNone) {}
 
 int Clusters::widthOf(double reach, double cell) { return 2 * static_cast<int>(std::ceil(reach / cell)) + 1; }
@@ -35,8 +35,8 @@ void Clusters::connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::V
 
 void Clusters::fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
                     const std::vector<float>& heights, const std::vector<ClusterRole>& roles) {
-  const auto per_cell = static_cast<float>(1.0 / settings_.cell);
-  const auto highest = static_cast<float>(settings_.height);
+  const auto per_cell = static_cast<float>(1.0 / options_.cell);
+  const auto highest = static_cast<float>(options_.height);
   cells_.clear();
   cell_in_column_.clear();
   low_echoes_.clear();
@@ -81,8 +81,8 @@ int Clusters::rootOf(int cell) {
 void Clusters::join(int cell) {
   const Cell here = cells_[static_cast<std::size_t>(cell)];
   const double cells_away = std::hypot(here.x - width_ / 2, here.y - width_ / 2);
-  const int across = std::max(1, static_cast<int>(std::ceil(cells_away * settings_.across_angle)));
-  const int up = std::max(1, static_cast<int>(std::ceil(cells_away * settings_.up_angle)));
+  const int across = std::max(1, static_cast<int>(std::ceil(cells_away * options_.across_angle)));
+  const int up = std::max(1, static_cast<int>(std::ceil(cells_away * options_.up_angle)));
   const int last_z = std::min(here.z + up, layers_ - 1);
   const int first_x = std::max(here.x - across, 0), last_x = std::min(here.x + across, width_ - 1);
   const int first_y = std::max(here.y - across, 0), last_y = std::min(here.y + across, width_ - 1);
@@ -117,18 +117,18 @@ void Clusters::number() {
   }
 }
 
-double Clusters::bytesFor(double reach, const Settings& settings, double echoes, double connected) {
+double Clusters::bytesFor(double reach, const Options& options, double echoes, double connected) {
   constexpr double kEchoesACell = 6.0, kCellsAColumn = 3.0;
-  const double columns = connected / kEchoesACell / kCellsAColumn, layers = settings.height / settings.cell + 1.0;
+  const double columns = connected / kEchoesACell / kCellsAColumn, layers = options.height / options.cell + 1.0;
   const double a_cell = sizeof(Cell) + sizeof(int) + layers / kCellsAColumn * sizeof(int);
-  return sizeof(int) * (std::pow(widthOf(reach, settings.cell), 2) + echoes) + kCellsAColumn * columns * a_cell;
+  return sizeof(int) * (std::pow(widthOf(reach, options.cell), 2) + echoes) + kCellsAColumn * columns * a_cell;
 }
 
-Clusters::Settings clustersOf(const ObjectConfig& config, double finer) {
-  Clusters::Settings settings;
-  settings.cell = finer * config.cell;
-  settings.height = config.height;
-  return settings;
+Clusters::Options clustersOf(const ObjectConfig& config, double finer) {
+  Clusters::Options options;
+  options.cell = finer * config.cell;
+  options.height = config.height;
+  return options;
 }
 
 std::size_t Clusters::memoryBytes() const {

@@ -14,7 +14,7 @@ namespace donex {
 /// beam apart touch at any range, since the reach grows with the distance from the sensor.
 class Clusters {
  public:
-  struct Settings {
+  struct Options {
     double cell = 0.3;           ///< edge of a cell [m]
     double height = 4.5;         ///< echoes higher above ground belong to no cluster [m]
     double across_angle = 0.01;  ///< echoes within this angle touch, horizontally: more than a sensor's step [rad]
@@ -22,7 +22,7 @@ class Clusters {
   };
 
   /// A square of `reach` [m] around the sensor.
-  Clusters(double reach, const Settings& settings);
+  Clusters(double reach, const Options& options);
 
   /// `echoes` [m] in a frame whose z points up, `heights` above ground [m], one an echo.
   void connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
@@ -37,7 +37,7 @@ class Clusters {
   std::size_t memoryBytes() const;
   /// What memoryBytes will be, for scans of so many echoes of which `connected` take part [bytes], about: scenes differ
   /// in how many cells echoes share.
-  static double bytesFor(double reach, const Settings& settings, double echoes, double connected);
+  static double bytesFor(double reach, const Options& options, double echoes, double connected);
 
  private:
   struct Cell {
@@ -65,7 +65,7 @@ class Clusters {
   void join(int cell);
   void number();
 
-  Settings settings_;
+  Options options_;
   int width_, layers_;
   std::vector<int> column_at_;       ///< by x, y: number of the column, or kNone
   std::vector<int> cell_in_column_;  ///< by column, z: number of the cell, or kNone
@@ -77,6 +77,6 @@ class Clusters {
 };
 
 /// What a configuration says of clusters; their cells are `finer` times the configured edge.
-Clusters::Settings clustersOf(const ObjectConfig& config, double finer = 1.0);
+Clusters::Options clustersOf(const ObjectConfig& config, double finer = 1.0);
 
 }  // namespace donex

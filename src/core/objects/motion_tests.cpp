@@ -7,22 +7,6 @@ namespace donex {
 namespace {
 
 constexpr std::size_t kPresentPoints = 4 * TraceHistory::kPoints;
-constexpr std::size_t kLeastPoints = 5;
-constexpr double kStillShare = 0.4;  // of the trace may lie near a surface
-constexpr double kFit = 0.25;        // [m] between a point and its counterpart
-constexpr double kFitShare = 0.6;    // of the trace must have one
-constexpr int kFitRounds = 3;
-// What many echoes describe is placed better: smaller shifts count.
-constexpr std::size_t kManyEchoes = 200;
-struct Step {
-  double shift;  ///< [m] that the object must have moved
-  float margin;  ///< [m] that its former place must be clear by
-};
-constexpr Step kStep = {0.4, 0.25F}, kStepOfMany = {0.3, 0.2F};
-
-constexpr float kStandsBelow = 1.2F;  // [m] what begins lower may stand behind a fence or a parked car
-constexpr float kBeneath = 0.5F;      // [m] so near is a surface that lies beneath
-constexpr std::size_t kPointsBeneath = 16;
 
 /// Some echoes of a segment.
 struct Points {
@@ -43,8 +27,8 @@ Eigen::Vector3d offsetToNearest(const Eigen::Vector3d& point, const Points& othe
 
 }  // namespace
 
-MotionTests::MotionTests(const JudgedScan& scan, const ScanSight& now)
-    : scan_(scan), now_(now), points_from_odom_(scan.odom_from_points.inverse()) {}
+MotionTests::MotionTests(const JudgedScan& scan, const ScanSight& now, const MotionTestOptions& options)
+    : scan_(scan), options_(options), now_(now), points_from_odom_(scan.odom_from_points.inverse()) {}
 
 FormerPlace MotionTests::lookBack(const Trace& trace) const {
   FormerPlace former;
@@ -57,37 +41,41 @@ FormerPlace MotionTests::lookBack(const Trace& trace) const {
 }
 
 bool MotionTests::hasMoved(const Trace& trace, const Segment& segment) const {
-  const Step& step = segment.echoes.size() >= kManyEchoes ? kStepOfMany : kStep;
+  const bool is_placed_well = segment.echoes.size() >= options_.many_echoes;
+  const MotionTestOptions::Step& step = is_placed_well ? options_.step_of_many : options_.step;
   const double shift = (segment.center() - trace.center).head<2>().norm();
-  const bool worth_asking = !isMostlySettled(segment) && trace.size() >= kLeastPoints && shift >= step.shift;
+  const bool worth_asking =
+      !SegmentRules::isMostlySettled(segment) && trace.size() >= options_.least_points && shift >= step.shift;
   return worth_asking && hasLeft(trace, step.margin) && fitsElsewhere(trace, segment, step.shift);
 }
 
 bool MotionTests::hangs(const Segment& segment) const {
-  if (segment.lowest <= kStandsBelow) return false;
+  if (segment.lowest <= static_cast<float>(options_.stands_below)) return false;
   int seen = 0, hidden = 0;
-  const std::size_t stride = segment.echoes.size() / kPointsBeneath + 1;
+  const std::size_t stride = segment.echoes.size() / options_.points_beneath + 1;
   for (std::size_t i = 0; i < segment.echoes.size(); i += stride) {
     const std::uint32_t echo = segment.echoes[i];
     Eigen::Vector3f beneath = scan_.points[echo];
     beneath.z() -= scan_.heights[echo] - 0.5F * segment.lowest;
-    const SightImage::Sight sight = now_.throughGaps(beneath, kBeneath);
+    const SightImage::Sight sight = now_.throughGaps(beneath, static_cast<float>(options_.beneath_margin));
     seen += sight == SightImage::Sight::kFree || sight == SightImage::Sight::kSurface ? 1 : 0;
     hidden += sight == SightImage::Sight::kHidden ? 1 : 0;
   }
   return seen > hidden;
 }
 
-bool MotionTests::hasLeft(const Trace& trace, float margin) const {
+bool MotionTests::hasLeft(const Trace& trace, double margin) const {
+  const auto clear_by = static_cast<float>(margin);
   int left = 0, still = 0, near_surface = 0;
   for (const Eigen::Vector3d& in_odom : trace) {
     const Eigen::Vector3f point = (points_from_odom_ * in_odom).cast<float>();
-    const SightImage::Sight through = now_.throughGaps(point, margin);
+    const SightImage::Sight through = now_.throughGaps(point, clear_by);
     left += through == SightImage::Sight::kFree ? 1 : 0;
     still += through == SightImage::Sight::kSurface ? 1 : 0;
-    near_surface += now_.at(point, margin) == SightImage::Sight::kSurface ? 1 : 0;
+    near_surface += now_.at(point, clear_by) == SightImage::Sight::kSurface ? 1 : 0;
   }
-  return left >= kLeastLeft && left > still && near_surface <= kStillShare * static_cast<double>(trace.size());
+  return left >= options_.least_left && left > still &&
+         near_surface <= options_.still_share * static_cast<double>(trace.size());
 }
 
 bool MotionTests::fitsElsewhere(const Trace& trace, const Segment& segment, double least_shift) const {
@@ -97,8 +85,8 @@ bool MotionTests::fitsElsewhere(const Trace& trace, const Segment& segment, doub
   // From centre to centre, which another view of the same object displaces, to the best fit.
   Eigen::Vector3d shift = segment.center() - trace.center;
   int fitting = 0;
-  for (int round = 1; round <= kFitRounds; ++round) {
-    const double reach = round < kFitRounds ? 2.0 * kFit : kFit;
+  for (int round = 1; round <= options_.fit_rounds; ++round) {
+    const double reach = round < options_.fit_rounds ? 2.0 * options_.fit_distance : options_.fit_distance;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     fitting = 0;
     for (const Eigen::Vector3d& point : trace) {
@@ -106,9 +94,9 @@ bool MotionTests::fitsElsewhere(const Trace& trace, const Segment& segment, doub
       if (offset.norm() < reach) sum += offset, ++fitting;
     }
     if (fitting == 0) return false;
-    if (round < kFitRounds) shift += sum / fitting;
+    if (round < options_.fit_rounds) shift += sum / fitting;
   }
-  return shift.head<2>().norm() >= least_shift && fitting >= kFitShare * static_cast<double>(trace.size());
+  return shift.head<2>().norm() >= least_shift && fitting >= options_.fit_share * static_cast<double>(trace.size());
 }
 
 }  // namespace donex

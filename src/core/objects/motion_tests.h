@@ -3,13 +3,31 @@
 
 #include <Eigen/Geometry>
 
-#include "core/objects/segment.h"
+#include "core/objects/segment_rules.h"
 #include "core/objects/trace_history.h"
 #include "core/sight/sight_history.h"
 
 namespace donex {
 
-constexpr int kLeastLeft = 3;  ///< points of a trace that must be free now before its place counts as left
+struct MotionTestOptions {
+  /// What tells that an object has moved.
+  struct Step {
+    double shift;   ///< that its shape must have moved [m]
+    double margin;  ///< that its former place must be clear by [m]
+  };
+
+  int least_left = 3;             ///< points of a trace that must be free now before its place counts as left
+  std::size_t least_points = 5;   ///< of a trace, fewer have no shape
+  double still_share = 0.4;       ///< of the trace may lie near a surface
+  double fit_distance = 0.25;     ///< between a point and its counterpart [m]
+  double fit_share = 0.6;         ///< of the trace must have one
+  int fit_rounds = 3;             ///< of shifting towards the counterparts; the last one only counts
+  std::size_t many_echoes = 200;  ///< what so many describe is placed better: smaller shifts count
+  Step step{0.4, 0.25}, step_of_many{0.3, 0.2};  ///< shift and margin [m]
+  double stands_below = 1.2;                     ///< what begins lower may stand behind a fence or a parked car [m]
+  double beneath_margin = 0.5;                   ///< so near is a surface that lies beneath [m]
+  std::size_t points_beneath = 16;               ///< that are looked at
+};
 
 /// The line of sight's own history: what stood there has left, or stands there still, or is not known.
 struct FormerPlace {
@@ -20,8 +38,8 @@ struct FormerPlace {
 /// The present scan, asked for former places.
 class MotionTests {
  public:
-  /// `now`: what the present scan sees, asked in its points. The scan outlives this.
-  MotionTests(const JudgedScan& scan, const ScanSight& now);
+  /// `now`: what the present scan sees, asked in its points. The scan and the options outlive this.
+  MotionTests(const JudgedScan& scan, const ScanSight& now, const MotionTestOptions& options);
 
   /// Read carefully: of a trace whose place is hidden now nothing is known.
   FormerPlace lookBack(const Trace& trace) const;
@@ -34,10 +52,11 @@ class MotionTests {
   bool hangs(const Segment& segment) const;
 
  private:
-  bool hasLeft(const Trace& trace, float margin) const;
+  bool hasLeft(const Trace& trace, double margin) const;
   bool fitsElsewhere(const Trace& trace, const Segment& segment, double least_shift) const;
 
   const JudgedScan& scan_;
+  const MotionTestOptions& options_;
   ScanSight now_;
   Eigen::Isometry3d points_from_odom_;
 };

@@ -1,36 +1,20 @@
 #include "core/objects/object_tracker.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/objects/oriented_box.h"
 
 namespace donex {
-namespace {
-
-constexpr double kLargestStep = 4.0;  // [m] between two scans, before a velocity is known
-constexpr double kLost = 0.6;         // [s] unseen for longer: forgotten
-// An object's former place is asked for after these times [s]: soon for the fast, later again for the slow.
-constexpr std::array<double, 3> kLookBack = {0.3, 0.6, 1.0};
-constexpr double kSmoothing = 0.3;  // share of the newest displacement in the velocity
-constexpr int kScansToBelieve = 2;
-constexpr double kMovesOn = 1.0;          // [s] after it was seen to move as one, an object does so still
-constexpr double kSurelyMoving = 5.0;     // [m/s] a hedge that comes into view step by step seems slower
-constexpr double kReleaseAfter = 0.3;     // [s] but its parts are released sooner
-constexpr double kForgetExtent = 0.9;     // of the former extent remains, a scan
-constexpr double kRim = 0.5;              // [m] around a moving object
-constexpr double kSettledFragment = 0.2;  // share
-
-}  // namespace
-
-ObjectTracker::ObjectTracker(const ObjectConfig& config) : config_(config), traces_(kLookBack.back(), kLost) {}
+ObjectTracker::ObjectTracker(const ObjectConfig& config, const TrackerOptions& options)
+    : config_(config), options_(options), rules_(config), traces_(options.look_back.back(), options.lost_after) {}
 
 void ObjectTracker::predict(double stamp, Predictions& predictions) const {
   predictions.clear();
   for (const Track& track : tracks_) {
     if (!track.dynamic) continue;
-    const bool goes_on = stamp - track.last_moved_whole < kMovesOn && track.velocity.norm() > kSurelyMoving;
+    const bool goes_on =
+        stamp - track.last_moved_whole < options_.moves_on && track.velocity.norm() > options_.moves_on_speed;
     predictions.push_back({track.centerAt(stamp), track.extent, track.full_extent, goes_on});
   }
 }
@@ -42,10 +26,10 @@ void ObjectTracker::update(const JudgedScan& scan, const Segments& segments, con
   sensor_ = scan.odom_from_points * scan.sensor.cast<double>();
   traces_.begin(scan.stamp);
   match(scan.stamp, segments);
-  const MotionTests tests(scan, now);
+  const MotionTests tests(scan, now, test_options_);
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const Segment& segment = segments[i];
-    if (isTooLong(segment)) continue;
+    if (rules_.isTooLong(segment)) continue;
     Track& track = trackOf(i, scan.stamp, segment);
     if (config_.motion) testMotion(track, tests, scan.stamp, segment);
     verdicts[i] = decide(track, tests, scan.stamp, segment);
@@ -53,7 +37,7 @@ void ObjectTracker::update(const JudgedScan& scan, const Segments& segments, con
     if (track.ever_dynamic) describe(track, verdicts[i].proof, scan, segment);
   }
   complete(segments, predictions, verdicts);
-  const auto is_lost = [&](const Track& track) { return track.last_seen < scan.stamp - kLost; };
+  const auto is_lost = [&](const Track& track) { return track.last_seen < scan.stamp - options_.lost_after; };
   tracks_.erase(std::remove_if(tracks_.begin(), tracks_.end(), is_lost), tracks_.end());
 }
 
@@ -77,10 +61,11 @@ void ObjectTracker::match(double stamp, const Segments& segments) {
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     const Track& track = tracks_[t];
     const Eigen::Vector3d predicted = track.centerAt(stamp);
-    const double step = track.first_seen < track.last_seen ? kFollowed : kLargestStep;
+    const bool has_velocity = track.first_seen < track.last_seen;
+    const double step = has_velocity ? rules_.options().followed_distance : options_.first_step;
     for (std::size_t c = 0; c < segments.size(); ++c) {
       const double distance = (segments[c].center() - predicted).norm();
-      if (distance > step || !alike(track.extent, segments[c].extent())) continue;
+      if (distance > step || !rules_.areAlike(track.extent, segments[c].extent())) continue;
       pairs_.push_back({distance, t, c});
     }
   }
@@ -97,17 +82,17 @@ void ObjectTracker::match(double stamp, const Segments& segments) {
   }
 }
 
-void ObjectTracker::follow(Track& track, double stamp, const Segment& segment) {
+void ObjectTracker::follow(Track& track, double stamp, const Segment& segment) const {
   const double elapsed = stamp - track.last_seen;
   if (elapsed > 0.0) {
     const Eigen::Vector3d velocity = (segment.center() - track.center) / elapsed;
     const bool is_second = track.last_seen <= track.first_seen;
-    track.velocity =
-        is_second ? velocity : Eigen::Vector3d((1.0 - kSmoothing) * track.velocity + kSmoothing * velocity);
+    const double newest = is_second ? 1.0 : 0.3;
+    track.velocity = (1.0 - newest) * track.velocity + newest * velocity;
   }
   track.center = segment.center();
   track.extent = segment.extent();
-  track.full_extent = track.extent.cwiseMax(kForgetExtent * track.full_extent);
+  track.full_extent = track.extent.cwiseMax(0.9 * track.full_extent);
   track.last_seen = stamp;
 }
 
@@ -115,51 +100,53 @@ void ObjectTracker::testMotion(Track& track, const MotionTests& tests, double st
   bool receded = false, advanced = false, moved = false;
   // What was cut out where it was predicted cannot prove by its place that it went there.
   Trace trace;
-  const bool may_tell = !segment.cut_out && !isMostlySettled(segment);
-  for (const double ago : kLookBack) {
+  const bool may_tell = !segment.cut_out && !SegmentRules::isMostlySettled(segment);
+  for (const double ago : options_.look_back) {
     if (!may_tell || !traces_.find(track.trace, stamp - ago, trace)) continue;
     const FormerPlace former = tests.lookBack(trace);
     receded |= former.left >= config_.min_echoes && former.left > former.still;
-    advanced |= former.left >= kLeastLeft && segment.new_echoes >= config_.min_echoes;
-    const bool fit_tells = isUpright(segment) || segment.new_echoes >= kLeastLeft || former.left >= kLeastLeft;
+    advanced |= former.left >= test_options_.least_left && segment.new_echoes >= config_.min_echoes;
+    const bool has_changed = std::max(segment.new_echoes, former.left) >= test_options_.least_left;
+    const bool fit_tells = rules_.isUpright(segment) || has_changed;
     moved = moved || (fit_tells && tests.hasMoved(trace, segment));
   }
-  track.receding_scans = receded ? track.receding_scans + 1 : 0;
-  track.advancing_scans = advanced ? track.advancing_scans + 1 : 0;
-  track.moving_scans = moved ? track.moving_scans + 1 : 0;
+  track.receding.see(receded, stamp);
+  track.advancing.see(advanced, stamp);
+  track.shifting.see(moved, stamp);
 }
 
 /// All proofs of motion, those of the whole segment first.
 Proof ObjectTracker::proofOf(const Track& track, const MotionTests& tests, double stamp, const Segment& segment) const {
-  if (!isThin(segment, sensor_) && !tests.hangs(segment)) {
-    if (track.receding_scans >= kScansToBelieve) return Proof::kRearReceded;
-    if (track.moving_scans >= kScansToBelieve) return Proof::kShapeElsewhere;
-    if (track.advancing_scans >= kScansToBelieve) return Proof::kEndsMoved;
-    if (isNew(segment, config_) && !isNewOverhead(segment, sensor_)) return Proof::kEnteredFree;
+  if (!rules_.isThin(segment, sensor_) && !tests.hangs(segment)) {
+    if (isBelieved(track.receding, stamp)) return Proof::kRearReceded;
+    if (isBelieved(track.shifting, stamp)) return Proof::kShapeElsewhere;
+    if (isBelieved(track.advancing, stamp)) return Proof::kEndsMoved;
+    if (rules_.isNew(segment) && !rules_.isNewOverhead(segment, sensor_)) return Proof::kEnteredFree;
   }
   const bool just_stopped =
-      track.dynamic && !isMostlySettled(segment) && stamp - track.last_motion <= config_.stop_time;
+      track.dynamic && !SegmentRules::isMostlySettled(segment) && stamp - track.last_motion <= config_.stop_time;
   return just_stopped ? Proof::kMovedBefore : Proof::kNone;
 }
 
 Verdict ObjectTracker::decide(Track& track, const MotionTests& tests, double stamp, const Segment& segment) const {
   const Proof proof = proofOf(track, tests, stamp, segment);
   const bool is_proven_now = proof != Proof::kNone && proof != Proof::kMovedBefore;
-  if (track.receding_scans >= kScansToBelieve || track.moving_scans >= kScansToBelieve) track.last_moved_whole = stamp;
+  if (isBelieved(track.receding, stamp) || isBelieved(track.shifting, stamp)) track.last_moved_whole = stamp;
   if (is_proven_now) track.last_motion = stamp;
   track.dynamic = proof != Proof::kNone;
   track.ever_dynamic = track.ever_dynamic || track.dynamic;
-  return {proof, stamp - track.last_moved_whole <= kReleaseAfter};
+  return {proof, stamp - track.last_moved_whole <= options_.released_after};
 }
 
-void ObjectTracker::complete(const Segments& segments, const Predictions& predictions, Verdicts& verdicts) {
+void ObjectTracker::complete(const Segments& segments, const Predictions& predictions, Verdicts& verdicts) const {
   // A pole before a vehicle leaves fragments of it, too small to tell anything themselves.
   for (const Prediction& whole : predictions) {
-    if (!whole.moves_whole || !Prediction::isLong(whole.full_extent)) continue;
-    const Eigen::Array3d half = 0.5 * whole.full_extent.array() + kRim;
+    if (!whole.moves_whole || !rules_.isLong(whole.full_extent)) continue;
+    const Eigen::Array3d half = 0.5 * whole.full_extent.array() + options_.whole_rim;
     for (std::size_t i = 0; i < segments.size(); ++i) {
       const Segment& segment = segments[i];
-      const bool settled = segment.settled_echoes > kSettledFragment * static_cast<double>(segment.echoes.size());
+      const bool settled =
+          segment.settled_echoes > options_.settled_fragment * static_cast<double>(segment.echoes.size());
       const bool inside =
           ((segment.low - whole.center).array() > -half).all() && ((segment.high - whole.center).array() < half).all();
       if (inside && !settled && !verdicts[i].moves()) verdicts[i] = {Proof::kPartOfMoving, true};

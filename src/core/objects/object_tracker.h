@@ -1,6 +1,8 @@
 // Segments followed over time: does this object move? (algorithm: "Tracks", "Proofs of motion")
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <limits>
 #include <vector>
 
@@ -8,6 +10,21 @@
 #include "donex/object.h"
 
 namespace donex {
+
+struct TrackerOptions {
+  double first_step = 4.0;  ///< before a velocity is known, an object is looked for within this distance [m]
+  double lost_after = 0.6;  ///< unseen for longer: forgotten [s]
+  /// An object's former place is asked for after these times: soon for the fast, later again for the slow [s].
+  std::array<double, 3> look_back = {0.3, 0.6, 1.0};
+  double velocity_time = 0.28;    ///< over which displacements make the velocity [s]
+  double believed_after = 0.08;   ///< a sign of motion must last: what one scan says may be a flicker [s]
+  double moves_on = 1.0;          ///< after it was seen to move as one, an object does so still [s]
+  double moves_on_speed = 5.0;    ///< a hedge that comes into view step by step seems slower [m/s]
+  double released_after = 0.3;    ///< but its parts are released sooner [s]
+  double extent_time = 0.95;      ///< over which the extent seen before is forgotten [s]
+  double whole_rim = 0.5;         ///< around an object that moves as one: fragments in it are its own [m]
+  double settled_fragment = 0.2;  ///< share of settled echoes from which a fragment is not
+};
 
 /// Follows segments from scan to scan. An object moves
 ///  - where enough of its echoes are new: its front comes into space that was free.
@@ -18,7 +35,7 @@ namespace donex {
 ///  - where its former shape fits it at another place, and is gone from the old one.
 class ObjectTracker {
  public:
-  explicit ObjectTracker(const ObjectConfig& config);
+  explicit ObjectTracker(const ObjectConfig& config, const TrackerOptions& options = {});
 
   /// Where the moving objects should be at `stamp` [s].
   void predict(double stamp, Predictions& predictions) const;
@@ -37,13 +54,24 @@ class ObjectTracker {
  private:
   static constexpr double kNever = -std::numeric_limits<double>::infinity();
 
+  /// Something that is seen in one scan after another.
+  class Sign {
+   public:
+    void see(bool is_seen, double stamp) { since_ = is_seen ? std::min(since_, stamp) : kNotSeen; }
+    double seenFor(double stamp) const { return stamp - since_; }  ///< [s], negative where it is not seen
+
+   private:
+    static constexpr double kNotSeen = std::numeric_limits<double>::infinity();
+    double since_ = kNotSeen;
+  };
+
   struct Track {
     std::uint32_t id = 0;
     Eigen::Vector3d center, extent, velocity = Eigen::Vector3d::Zero();
     Eigen::Vector3d full_extent;  ///< as seen when less of it was hidden
     double first_seen = 0.0, last_seen = 0.0;
     double last_motion = kNever, last_moved_whole = kNever;
-    int receding_scans = 0, advancing_scans = 0, moving_scans = 0;  ///< in a row
+    Sign receding, advancing, shifting;
     bool dynamic = false, ever_dynamic = false;
     bool is_found = false;   ///< in the present scan
     TraceHistory::Id trace;  ///< its last one
@@ -57,14 +85,18 @@ class ObjectTracker {
 
   void match(double stamp, const Segments& segments);
   Track& trackOf(std::size_t segment_index, double stamp, const Segment& segment);
-  static void follow(Track& track, double stamp, const Segment& segment);
+  void follow(Track& track, double stamp, const Segment& segment) const;
+  bool isBelieved(const Sign& sign, double stamp) const { return sign.seenFor(stamp) >= options_.believed_after; }
   void testMotion(Track& track, const MotionTests& tests, double stamp, const Segment& segment) const;
   Proof proofOf(const Track& track, const MotionTests& tests, double stamp, const Segment& segment) const;
   Verdict decide(Track& track, const MotionTests& tests, double stamp, const Segment& segment) const;
-  static void complete(const Segments& segments, const Predictions& predictions, Verdicts& verdicts);
+  void complete(const Segments& segments, const Predictions& predictions, Verdicts& verdicts) const;
   void describe(const Track& track, Proof proof, const JudgedScan& scan, const Segment& segment);
 
   ObjectConfig config_;
+  TrackerOptions options_;
+  SegmentRules rules_;
+  MotionTestOptions test_options_;
   Eigen::Vector3d sensor_ = Eigen::Vector3d::Zero();  ///< of the present scan, odometry frame [m]
   TraceHistory traces_;
   std::vector<Track> tracks_;

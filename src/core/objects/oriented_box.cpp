@@ -6,7 +6,7 @@
 namespace donex {
 namespace {
 
-constexpr double kSurelyMoving = 1.0;  // [m/s] from here on the velocity tells the direction
+constexpr double kDirectedSpeed = 1.0;  // [m/s] from here on the velocity tells the direction
 
 /// Some points of many, odometry frame [m]; transformed whenever they are asked for, so that nothing is kept.
 class InOdom {
@@ -44,7 +44,7 @@ double mainAxis(const InOdom& points) {
 void fitBox(const std::pmr::vector<std::uint32_t>& indices, const std::vector<Eigen::Vector3f>& points,
             const Eigen::Isometry3d& odom_from_points, const Eigen::Vector3d& velocity, Object& object) {
   const InOdom in_odom(indices, points, odom_from_points);
-  const bool moving = velocity.head<2>().norm() > kSurelyMoving;
+  const bool moving = velocity.head<2>().norm() > kDirectedSpeed;
   const double yaw = moving ? std::atan2(velocity.y(), velocity.x()) : mainAxis(in_odom);
   const Eigen::Matrix3d axes = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;

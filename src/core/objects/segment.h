@@ -8,13 +8,9 @@
 
 #include "core/evidence/judged_scan.h"
 #include "core/objects/scan_memory.h"
-#include "donex/config.h"
 #include "donex/proof.h"
 
 namespace donex {
-
-/// Farther from its predicted place [m] an object that is followed is not looked for.
-constexpr double kFollowed = 1.5;
 
 /// Connected echoes of the present scan, and what their places say. Only the segmenter writes it.
 struct Segment {
@@ -87,39 +83,10 @@ struct Prediction {
   Eigen::Vector3d center, extent;
   Eigen::Vector3d full_extent;  ///< as seen when less of it was hidden
   bool moves_whole = false;     ///< it was seen to move as a whole not long ago
-
-  /// Longer than what it moves in the birth window: its own side settles under it.
-  bool isLong() const { return isLong(extent); }
-  static bool isLong(const Eigen::Vector3d& extent);
-  bool looksLike(const Segment& segment) const;
-  /// The object is somewhere in the segment, which is more than that.
-  bool isWithin(const Segment& segment) const;
 };
 using Predictions = std::vector<Prediction>;
 
 /// Fills in everything that follows from the segment's echoes.
 void describeEchoes(const JudgedScan& scan, Segment& segment);
-
-/// Extents [m] that may be those of one object, seen from two places.
-bool alike(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
-
-/// Longer than any vehicle: a wall, a hedge, or objects that touch.
-bool isTooLong(const Segment& segment);
-
-/// More of it is settled than not.
-bool isMostlySettled(const Segment& segment);
-
-/// Enough of the segment is new, by number and against what is settled.
-bool isNew(const Segment& segment, const ObjectConfig& config);
-
-/// All that is new of it lies above people's heads and is no higher than a beam or two: an eave, a branch, a cable.
-/// `sensor` in the odometry frame.
-bool isNewOverhead(const Segment& segment, const Eigen::Vector3d& sensor);
-
-/// Not a patch of ground or a roof, whose shape fits wherever it is shifted along itself.
-bool isUpright(const Segment& segment);
-
-/// Near, and yet hardly higher than a beam: an edge, a wire, a branch. `sensor` in the odometry frame.
-bool isThin(const Segment& segment, const Eigen::Vector3d& sensor);
 
 }  // namespace donex

@@ -7,14 +7,12 @@
 namespace donex {
 namespace {
 
-constexpr double kCutRim = 0.3, kTightCutRim = 0.1;  // [m] around a predicted object
-constexpr std::size_t kWorthCutting = 10;            // echoes
 constexpr std::size_t kTooSmall = std::numeric_limits<std::size_t>::max();
 
 }  // namespace
 
-Segmenter::Segmenter(double reach, const ObjectConfig& config)
-    : config_(config), clusters_(reach, clustersOf(config)) {}
+Segmenter::Segmenter(double reach, const ObjectConfig& config, const SegmenterOptions& options)
+    : config_(config), options_(options), rules_(config), clusters_(reach, clustersOf(config)) {}
 
 void Segmenter::segment(const JudgedScan& scan, const Predictions& predictions, Segments& segments) {
   segments.clear();
@@ -55,19 +53,20 @@ void Segmenter::append(const JudgedScan& scan, Segments& segments) {
   for (std::size_t i = first; i < segments.size(); ++i) describeEchoes(scan, segments[i]);
 }
 
-void Segmenter::cutOut(const JudgedScan& scan, const Prediction& object, std::size_t whole, Segments& segments) {
-  const bool fits_in = ((object.extent - segments[whole].extent()).array() <= kCutRim).all();
-  const bool worth_it = object.moves_whole && object.isLong() && object.isWithin(segments[whole]) && fits_in;
+void Segmenter::cutOut(const JudgedScan& scan, const Prediction& object, std::size_t whole, Segments& segments) const {
+  const bool fits_in = ((object.extent - segments[whole].extent()).array() <= options_.cut_rim).all();
+  const bool is_hidden = rules_.isLong(object.extent) && rules_.holds(segments[whole], object);
+  const bool worth_it = object.moves_whole && is_hidden && fits_in;
   if (!worth_it) return;
   const auto is_part = [&](std::uint32_t echo) {
     const Eigen::Vector3d offset = scan.odom_from_points * scan.points[echo].cast<double>() - object.center;
-    const bool inside = (offset.array().abs() <= (0.5 * object.extent).array() + kTightCutRim).all();
+    const bool inside = (offset.array().abs() <= (0.5 * object.extent).array() + options_.tight_cut_rim).all();
     return inside && scan.places[echo] != Place::kSettled;
   };
   const auto all = segments[whole].echoes.size();
   const auto of_part =
       static_cast<std::size_t>(std::count_if(segments[whole].echoes.begin(), segments[whole].echoes.end(), is_part));
-  if (of_part < kWorthCutting || all - of_part < kWorthCutting) return;
+  if (of_part < options_.least_part || all - of_part < options_.least_part) return;
   Segment& part = segments.add(of_part);
   Segment& rest = segments[whole];
   std::copy_if(rest.echoes.begin(), rest.echoes.end(), std::back_inserter(part.echoes), is_part);
@@ -79,14 +78,17 @@ void Segmenter::cutOut(const JudgedScan& scan, const Prediction& object, std::si
 }
 
 bool Segmenter::isMixed(const Segment& segment, const Predictions& predictions) const {
-  if (isNew(segment, config_)) return false;
-  const auto is_it = [&](const Prediction& object) { return object.isLong() && object.looksLike(segment); };
-  const bool is_known = !isMostlySettled(segment) && std::any_of(predictions.begin(), predictions.end(), is_it);
+  if (rules_.isNew(segment)) return false;
+  const auto is_it = [&](const Prediction& object) {
+    return rules_.isLong(object.extent) && rules_.looksLike(segment, object);
+  };
+  const bool is_known =
+      !SegmentRules::isMostlySettled(segment) && std::any_of(predictions.begin(), predictions.end(), is_it);
   if (is_known) return false;
   const std::size_t unsettled = segment.echoes.size() - static_cast<std::size_t>(segment.settled_echoes);
-  const bool has_parts =
-      unsettled >= kWorthCutting && 4 * static_cast<std::size_t>(segment.settled_echoes) >= unsettled;
-  const auto is_within = [&](const Prediction& object) { return object.isWithin(segment); };
+  const bool has_parts = unsettled >= options_.least_part &&
+                         segment.settled_echoes >= options_.least_settled * static_cast<double>(unsettled);
+  const auto is_within = [&](const Prediction& object) { return rules_.holds(segment, object); };
   const bool hides_an_object = has_parts && std::any_of(predictions.begin(), predictions.end(), is_within);
   return hides_an_object || segment.new_echoes >= config_.min_echoes;
 }

@@ -4,14 +4,21 @@
 #include <vector>
 
 #include "core/objects/clusters.h"
-#include "core/objects/segment.h"
+#include "core/objects/segment_rules.h"
 
 namespace donex {
+
+struct SegmenterOptions {
+  double cut_rim = 0.3;         ///< by which a predicted object may exceed what it is cut out of [m]
+  double tight_cut_rim = 0.1;   ///< around the predicted object: what lies in it is cut out with it [m]
+  std::size_t least_part = 10;  ///< a part of fewer echoes is not worth cutting
+  double least_settled = 0.25;  ///< settled by unsettled echoes: less hides no object
+};
 
 class Segmenter {
  public:
   /// A square of `reach` [m] around the sensor.
-  Segmenter(double reach, const ObjectConfig& config);
+  Segmenter(double reach, const ObjectConfig& config, const SegmenterOptions& options = {});
 
   /// The scan's clusters, one object each as far as can be told:
   ///  - what is predicted and has run into something larger is cut out of it;
@@ -24,10 +31,12 @@ class Segmenter {
 
  private:
   void append(const JudgedScan& scan, Segments& segments);
-  static void cutOut(const JudgedScan& scan, const Prediction& object, std::size_t whole, Segments& segments);
+  void cutOut(const JudgedScan& scan, const Prediction& object, std::size_t whole, Segments& segments) const;
   bool isMixed(const Segment& segment, const Predictions& predictions) const;
 
   ObjectConfig config_;
+  SegmenterOptions options_;
+  SegmentRules rules_;
   Clusters clusters_;
   std::vector<ClusterRole> roles_;
   std::vector<std::size_t> segment_of_;  ///< by cluster: its number

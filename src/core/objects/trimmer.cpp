@@ -3,14 +3,8 @@
 #include <algorithm>
 
 namespace donex {
-namespace {
-
-/// Against the segmenter's cells: what these still connect is close.
-constexpr double kFinerCells = 0.5;
-
-}  // namespace
-
-Trimmer::Trimmer(double reach, const ObjectConfig& config) : clusters_(reach, clustersOf(config, kFinerCells)) {}
+Trimmer::Trimmer(double reach, const ObjectConfig& config, const TrimmerOptions& options)
+    : clusters_(reach, clustersOf(config, options.finer_cells)) {}
 
 void Trimmer::trim(const JudgedScan& scan, const Segments& segments, const Verdicts& verdicts,
                    std::vector<Proof>& proofs) {
@@ -74,8 +68,8 @@ std::size_t Trimmer::largestNewPart(const Segment& segment) const {
   return largest;
 }
 
-double Trimmer::bytesFor(double reach, const ObjectConfig& config, double echoes) {
-  return Clusters::bytesFor(reach, clustersOf(config, kFinerCells), echoes, 0.0) + echoes * sizeof(ClusterRole);
+double Trimmer::bytesFor(double reach, const ObjectConfig& config, double echoes, const TrimmerOptions& options) {
+  return Clusters::bytesFor(reach, clustersOf(config, options.finer_cells), echoes, 0.0) + echoes * sizeof(ClusterRole);
 }
 
 std::size_t Trimmer::memoryBytes() const {

@@ -6,17 +6,13 @@
 #include "core/pi.h"
 
 namespace donex {
-namespace {
-
-constexpr double kDegree = kPi / 180.0;
-
-}  // namespace
+namespace {}  // namespace
 
 RangeImage::RangeImage(const Resolution& resolution)
     : columns_(static_cast<int>(std::lround(360.0 / resolution.column))),
-      rows_(static_cast<int>(std::ceil(2.0 * kSteepest / resolution.row))),
+      rows_(static_cast<int>(std::ceil(2.0 * kSteepestElevation / resolution.row))),
       columns_a_radian_(static_cast<float>(columns_ / (2.0 * kPi))),
-      rows_a_radian_(static_cast<float>(1.0 / (resolution.row * kDegree))),
+      rows_a_radian_(static_cast<float>(1.0 / (resolution.row * kRadiansPerDegree))),
       ranges_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0.0F) {}
 
 void RangeImage::clear() {
@@ -28,7 +24,7 @@ int RangeImage::pixelOf(const Eigen::Vector3f& point) const {
   const float across = point.head<2>().norm();
   const bool is_direction = std::isfinite(across) && std::isfinite(point.z()) && across > 0.0F;
   if (!is_direction) return kNone;
-  const float elevation = std::atan2(point.z(), across) + static_cast<float>(kSteepest * kDegree);
+  const float elevation = std::atan2(point.z(), across) + static_cast<float>(kSteepestElevation * kRadiansPerDegree);
   const int row = static_cast<int>(std::floor(elevation * rows_a_radian_));
   if (row < 0 || row >= rows_) return kNone;
   const float azimuth = std::atan2(point.y(), point.x()) + static_cast<float>(kPi);

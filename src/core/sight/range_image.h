@@ -22,7 +22,7 @@ class RangeImage {
   void clear();
 
   /// Keeps the nearest point of each pixel. Points that are not finite, in the origin or steeper than
-  /// kSteepest are left out.
+  /// kSteepestElevation are left out.
   void add(const Eigen::Vector3f& point);
 
   /// Range of the pixel in which `point` lies; 0 where nothing was seen.
@@ -30,7 +30,7 @@ class RangeImage {
 
   std::size_t memoryBytes() const { return (ranges_.capacity() + used_.capacity()) * sizeof(float); }
 
-  static constexpr double kSteepest = 60.0;  ///< elevation, up or down [deg]
+  static constexpr double kSteepestElevation = 60.0;  ///< elevation, up or down [deg]
 
  private:
   static constexpr int kNone = -1;

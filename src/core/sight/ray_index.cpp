@@ -11,7 +11,7 @@
 namespace donex {
 namespace {
 
-constexpr float kSteepest = 1.0F;  // tangent of the elevation where the outermost rows collect all the rest
+constexpr float kSteepestRow = 1.0F;  // tangent of the elevation where the outermost rows collect all the rest
 
 struct Projected {
   float *across, *up, *depth;
@@ -33,7 +33,7 @@ DONEX_WIDE_LOOPS void project(const Eigen::Vector3f& origin, float row_low, floa
     const float per_depth = 1.0F / (is_level ? depth : 1.0F);
     // Straight up and down belong to the first side's outermost rows.
     const float across = (ahead >= 0.0F ? beside : -beside) * per_depth;
-    const float up = is_level ? dz * per_depth : (dz > 0.0F ? kUpright : -kUpright);
+    const float up = is_level ? dz * per_depth : (dz > 0.0F ? kStraightUp : -kStraightUp);
     const int side = (along_x ? 0 : 1) + (ahead >= 0.0F ? 0 : 2);
     const float column = std::min(std::max((across + 1.0F) * (0.5F * kAcross), 0.0F), kAcross - 1.0F);
     const float row = std::min(std::max((up - row_low) * per_up, 0.0F), kUp - 1.0F);
@@ -117,8 +117,8 @@ RayIndex::Rows RayIndex::rowsOfScan() const {
   // and in which order it looks, does not matter then.
   const std::size_t with_direction = bins_of_part_.front().back().first;
   std::array<float, kLanes> lows, highs;
-  lows.fill(kSteepest);
-  highs.fill(-kSteepest);
+  lows.fill(kSteepestRow);
+  highs.fill(-kSteepestRow);
   for (std::size_t first = 0; first < with_direction; first += kLanes) {
     const std::size_t lanes = std::min(with_direction - first, lows.size());
     for (std::size_t lane = 0; lane < lanes; ++lane) {
@@ -127,8 +127,8 @@ RayIndex::Rows RayIndex::rowsOfScan() const {
     }
   }
   float low = *std::min_element(lows.begin(), lows.end()), high = *std::max_element(highs.begin(), highs.end());
-  low = std::max(low, -kSteepest);
-  high = std::min(high, kSteepest);
+  low = std::max(low, -kSteepestRow);
+  high = std::min(high, kSteepestRow);
   constexpr float kLeastSpan = 0.1F;
   return low <= high ? Rows{low, kUp / std::max(high - low, kLeastSpan)} : Rows{};
 }

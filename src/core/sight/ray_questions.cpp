@@ -96,8 +96,8 @@ bool RayIndex::shadowOn(int side, const Eigen::Vector3f& low, const Eigen::Vecto
   findBins(shadow);
   // A box around the sensor's axis: lines of sight through it may be as steep as they like, on the sensor's height even
   // in both directions.
-  if (at_sensor && near.z() <= kMargin) shadow.up_low = -kUpright, shadow.first_row = 0;
-  if (at_sensor && far.z() >= -kMargin) shadow.up_high = kUpright, shadow.last_row = kUp - 1;
+  if (at_sensor && near.z() <= kMargin) shadow.up_low = -kStraightUp, shadow.first_row = 0;
+  if (at_sensor && far.z() >= -kMargin) shadow.up_high = kStraightUp, shadow.last_row = kUp - 1;
   return true;
 }
 

@@ -26,8 +26,8 @@ struct Echoes {
   }
 };
 
-std::vector<int> clustersOf(const Echoes& echoes, double reach, const Clusters::Settings& settings) {
-  Clusters clusters(reach, settings);
+std::vector<int> clustersOf(const Echoes& echoes, double reach, const Clusters::Options& options) {
+  Clusters clusters(reach, options);
   clusters.connect(echoes.sensor, echoes.points, echoes.heights, echoes.roles);
   std::vector<int> of;
   for (std::size_t i = 0; i < echoes.points.size(); ++i) of.push_back(clusters.of(i));
@@ -37,15 +37,15 @@ std::vector<int> clustersOf(const Echoes& echoes, double reach, const Clusters::
 /// The rule, pair by pair: cells touch within the reach of the lower one, of either on one level.
 class BruteForce {
  public:
-  BruteForce(const Echoes& echoes, double reach, const Clusters::Settings& settings)
-      : settings_(settings), edge_(static_cast<int>(std::ceil(reach / settings.cell))) {
+  BruteForce(const Echoes& echoes, double reach, const Clusters::Options& options)
+      : options_(options), edge_(static_cast<int>(std::ceil(reach / options.cell))) {
     std::vector<Cell> cell_of(echoes.points.size());
     std::vector<bool> in(echoes.points.size(), false);
     std::map<Cell, int> label;
     for (std::size_t i = 0; i < cell_of.size(); ++i) {
       cell_of[i] = cellAt(echoes, i);
       in[i] = echoes.roles[i] != ClusterRole::kNone && echoes.heights[i] >= 0.0F &&
-              echoes.heights[i] <= static_cast<float>(settings.height) && std::abs(cell_of[i][0]) <= edge_ &&
+              echoes.heights[i] <= static_cast<float>(options.height) && std::abs(cell_of[i][0]) <= edge_ &&
               std::abs(cell_of[i][1]) <= edge_;
       if (in[i] && echoes.roles[i] == ClusterRole::kConnects) label.emplace(cell_of[i], static_cast<int>(label.size()));
     }
@@ -69,7 +69,7 @@ class BruteForce {
   using Cell = std::array<int, 3>;
 
   Cell cellAt(const Echoes& echoes, std::size_t i) const {
-    const auto per_cell = static_cast<float>(1.0 / settings_.cell);
+    const auto per_cell = static_cast<float>(1.0 / options_.cell);
     return {static_cast<int>(std::floor((echoes.points[i].x() - echoes.sensor.x()) * per_cell)),
             static_cast<int>(std::floor((echoes.points[i].y() - echoes.sensor.y()) * per_cell)),
             static_cast<int>(std::floor(echoes.heights[i] * per_cell))};
@@ -77,8 +77,8 @@ class BruteForce {
 
   bool touchFrom(const Cell& lower, const Cell& upper) const {
     const double away = std::hypot(lower[0], lower[1]);
-    const int across = std::max(1, static_cast<int>(std::ceil(away * settings_.across_angle)));
-    const int up = std::max(1, static_cast<int>(std::ceil(away * settings_.up_angle)));
+    const int across = std::max(1, static_cast<int>(std::ceil(away * options_.across_angle)));
+    const int up = std::max(1, static_cast<int>(std::ceil(away * options_.up_angle)));
     return upper[2] >= lower[2] && upper[2] - lower[2] <= up && std::abs(upper[0] - lower[0]) <= across &&
            std::abs(upper[1] - lower[1]) <= across;
   }
@@ -96,7 +96,7 @@ class BruteForce {
     }
   }
 
-  Clusters::Settings settings_;
+  Clusters::Options options_;
   int edge_;
   std::vector<int> of_;
   int count_ = 0;
@@ -113,7 +113,7 @@ TEST(Clusters, ConnectWhatBruteForceConnects) {
   for (int round = 0; round < 60; ++round) {
     const double reach = round % 3 == 0 ? 8.0 : 40.0;
     // Wide angles, so that the reach grows to several cells within the square.
-    const Clusters::Settings settings{round % 2 == 0 ? 0.3 : 0.5, 2.5, 0.01 * (round % 5), 0.015 * (round % 4)};
+    const Clusters::Options options{round % 2 == 0 ? 0.3 : 0.5, 2.5, 0.01 * (round % 5), 0.015 * (round % 4)};
     Echoes echoes;
     echoes.sensor = {draw(-50, 50), draw(-50, 50), 0.0F};
     const double spread = round % 3 == 0 ? 10.0 : 45.0;
@@ -124,9 +124,9 @@ TEST(Clusters, ConnectWhatBruteForceConnects) {
         echoes.add(x + draw(-0.6, 0.6), y + draw(-0.6, 0.6), height + draw(-0.4, 0.4), roles);
       }
     }
-    Clusters clusters(reach, settings);
+    Clusters clusters(reach, options);
     clusters.connect(echoes.sensor, echoes.points, echoes.heights, echoes.roles);
-    const BruteForce expected(echoes, reach, settings);
+    const BruteForce expected(echoes, reach, options);
     ASSERT_EQ(clusters.count(), expected.count()) << "round " << round;
     for (std::size_t i = 0; i < echoes.points.size(); ++i) {
       ASSERT_EQ(clusters.of(i), expected.of()[i]) << "round " << round << " echo " << i;
@@ -138,18 +138,18 @@ TEST(Clusters, ConnectWhatBruteForceConnects) {
   EXPECT_GT(4 * echoes_in_all, 5 * clusters_in_all) << "too few of them connected";
 }
 
-const Clusters::Settings kSettings{0.3, 4.5, 0.01, 0.015};
+const Clusters::Options kOptions{0.3, 4.5, 0.01, 0.015};
 
 TEST(Clusters, NumbersFollowTheFirstEchoes) {
   Echoes echoes;
   for (const float x : {9.0F, 3.0F, 9.1F, -5.0F, 3.1F, 9.2F}) echoes.add(x, 2.0F, 1.0F);
-  EXPECT_EQ(clustersOf(echoes, 20.0, kSettings), (std::vector<int>{0, 1, 0, 2, 1, 0}));
+  EXPECT_EQ(clustersOf(echoes, 20.0, kOptions), (std::vector<int>{0, 1, 0, 2, 1, 0}));
 }
 
 TEST(Clusters, AChainIsOneHoweverItIsOrdered) {
   Echoes echoes;
   for (const int i : {0, 7, 3, 1, 9, 5, 2, 8, 4, 6}) echoes.add(0.3F * static_cast<float>(i) + 0.15F, 4.0F, 1.0F);
-  EXPECT_EQ(clustersOf(echoes, 20.0, kSettings), std::vector<int>(10, 0));
+  EXPECT_EQ(clustersOf(echoes, 20.0, kOptions), std::vector<int>(10, 0));
 }
 
 TEST(Clusters, TheReachGrowsWithTheDistance) {
@@ -157,7 +157,7 @@ TEST(Clusters, TheReachGrowsWithTheDistance) {
     Echoes echoes;
     echoes.add(x, 0.1F, 1.0F);
     echoes.add(x, 0.1F + apart, 1.0F);
-    return clustersOf(echoes, 100.0, kSettings)[1] == 0;
+    return clustersOf(echoes, 100.0, kOptions)[1] == 0;
   };
   EXPECT_FALSE(connected(5.05F, 0.9F));
   EXPECT_TRUE(connected(80.05F, 0.9F)) << "a beam apart there";
@@ -169,7 +169,7 @@ TEST(Clusters, OnesAboveTheOtherTouchVertically) {
     Echoes echoes;
     echoes.add(x, 0.1F, 0.5F);
     echoes.add(x, 0.1F, 0.5F + apart);
-    return clustersOf(echoes, 100.0, kSettings)[1] == 0;
+    return clustersOf(echoes, 100.0, kOptions)[1] == 0;
   };
   EXPECT_TRUE(connected(5.05F, 0.35F));
   EXPECT_FALSE(connected(5.05F, 0.95F));
@@ -181,7 +181,7 @@ TEST(Clusters, TheSkirtHangsOnWhatStandsAboveItAndConnectsNothing) {
   echoes.add(5.0F, 0.1F, 0.4F);  // two objects,
   echoes.add(6.2F, 0.1F, 0.4F);
   for (int i = 0; i <= 8; ++i) echoes.add(5.0F + 0.15F * static_cast<float>(i), 0.1F, 0.2F, ClusterRole::kFollows);
-  const std::vector<int> of = clustersOf(echoes, 20.0, kSettings);
+  const std::vector<int> of = clustersOf(echoes, 20.0, kOptions);
   EXPECT_EQ(of[0], 0);
   EXPECT_EQ(of[1], 1) << "joined by the ground between them";
   EXPECT_EQ(of[2], 0) << "right below the first";
@@ -199,7 +199,7 @@ TEST(Clusters, HeightAndReachEnd) {
   echoes.add(0.0F, -21.0F, 1.0F);
   echoes.add(8.0F, 0.0F, std::numeric_limits<float>::infinity());
   const int none = Clusters::kNone;
-  EXPECT_EQ(clustersOf(echoes, 20.0, kSettings), (std::vector<int>{0, none, none, 1, none, none, none}));
+  EXPECT_EQ(clustersOf(echoes, 20.0, kOptions), (std::vector<int>{0, none, none, 1, none, none, none}));
 }
 
 TEST(Clusters, EachScanStartsAnew) {
@@ -207,7 +207,7 @@ TEST(Clusters, EachScanStartsAnew) {
   for (int i = 0; i < 50; ++i) many.add(static_cast<float>(i % 7), static_cast<float>(i), 1.0F);
   few.add(0.1F, 0.1F, 1.0F);
   few.add(2.1F, 0.1F, 1.0F);
-  Clusters clusters(60.0, kSettings);
+  Clusters clusters(60.0, kOptions);
   clusters.connect(many.sensor, many.points, many.heights, many.roles);
   EXPECT_GT(clusters.count(), 5);
   clusters.connect(few.sensor, few.points, few.heights, few.roles);

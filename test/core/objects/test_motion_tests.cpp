@@ -25,39 +25,40 @@ struct Left {
 
 /// A scan, its sight and its first object as a segment.
 struct Seen {
-  explicit Seen(const JudgedScene& seen, std::size_t echoes) : things(seen) {
-    history.add(things.scan(), things.judged.is_echo);
+  explicit Seen(const JudgedScene& seen, std::size_t echoes) : scene(seen) {
+    history.add(scene.scan(), scene.judged.is_echo);
     for (std::size_t i = 0; i < echoes; ++i) segment.echoes.push_back(static_cast<std::uint32_t>(i));
-    describeEchoes(things.judged, segment);
+    describeEchoes(scene.judged, segment);
   }
 
   Left leave() const {
     Left left;
-    left.history.begin(things.judged.stamp);
-    left.last = left.history.leave(things.judged, segment, {});
+    left.history.begin(scene.judged.stamp);
+    left.last = left.history.leave(scene.judged, segment, {});
     return left;
   }
-  FormerPlace lookBack(const Trace& trace) const { return MotionTests(things.judged, now()).lookBack(trace); }
-  bool hasMoved(const Trace& trace) const { return MotionTests(things.judged, now()).hasMoved(trace, segment); }
+  FormerPlace lookBack(const Trace& trace) const { return MotionTests(scene.judged, now(), options).lookBack(trace); }
+  bool hasMoved(const Trace& trace) const { return MotionTests(scene.judged, now(), options).hasMoved(trace, segment); }
 
-  ScanSight now() const { return history.newestSeenFrom(things.judged.odom_from_points); }
+  ScanSight now() const { return history.newestSeenFrom(scene.judged.odom_from_points); }
 
-  JudgedScene things;
+  JudgedScene scene;
   SightHistory history{2.0, 0.0, 0.5F, {true, 0.038}};
+  MotionTestOptions options;
   Segment segment;
 };
 
 /// Somebody 8 m ahead at y before a wall; the sensor moves along x.
 Seen somebody(double y, Place place = Place::kUnobserved, double sensor_x = 0.0, bool hidden = false) {
-  JudgedScene things(0.0, sensor_x);
-  things.face({8.0, y, 0.4}, {0.0, 0.5, 0.0}, 1.4, place, 0.05);
-  const std::size_t echoes = things.judged.points.size();
-  if (hidden) things.face({5.0, -3.0, 0.0}, {0.0, 2.5, 0.0}, 1.8, Place::kSettled, 0.02);
-  things.face({20.0, -15.0, 0.0}, {0.0, 30.0, 0.0}, 5.0, Place::kSettled, 0.1);
-  return Seen(things, echoes);
+  JudgedScene scene(0.0, sensor_x);
+  scene.face({8.0, y, 0.4}, {0.0, 0.5, 0.0}, 1.4, place, 0.05);
+  const std::size_t echoes = scene.judged.points.size();
+  if (hidden) scene.face({5.0, -3.0, 0.0}, {0.0, 2.5, 0.0}, 1.8, Place::kSettled, 0.02);
+  scene.face({20.0, -15.0, 0.0}, {0.0, 30.0, 0.0}, 5.0, Place::kSettled, 0.1);
+  return Seen(scene, echoes);
 }
 
-TEST(MotionTests, ATraceIsSpreadOverTheThing) {
+TEST(MotionTests, ATraceIsSpreadOverTheObject) {
   const Left left = somebody(-1.0).leave();
   const Trace trace = left;
   EXPECT_LE(trace.size(), 48U);
@@ -95,13 +96,13 @@ TEST(MotionTests, AShapeFoundElsewhereHasMoved) {
   EXPECT_FALSE(somebody(-1.2, Place::kSettled).hasMoved(trace)) << "what is settled stood there";
 }
 
-TEST(MotionTests, AnotherShapeIsAnotherThing) {
+TEST(MotionTests, AnotherShapeIsAnotherObject) {
   const Left trace = somebody(-2.0).leave();
-  JudgedScene things(0.0);
-  things.face({8.0, -0.5, 0.4}, {0.0, 0.1, 0.0}, 0.4, Place::kUnobserved, 0.05);
-  const std::size_t echoes = things.judged.points.size();
-  things.face({20.0, -15.0, 0.0}, {0.0, 30.0, 0.0}, 5.0, Place::kSettled, 0.1);
-  EXPECT_FALSE(Seen(things, echoes).hasMoved(trace));
+  JudgedScene scene(0.0);
+  scene.face({8.0, -0.5, 0.4}, {0.0, 0.1, 0.0}, 0.4, Place::kUnobserved, 0.05);
+  const std::size_t echoes = scene.judged.points.size();
+  scene.face({20.0, -15.0, 0.0}, {0.0, 30.0, 0.0}, 5.0, Place::kSettled, 0.1);
+  EXPECT_FALSE(Seen(scene, echoes).hasMoved(trace));
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ TEST(Segmenter, IsNewWhereEnoughIsNew) {
     segment.settled_echoes = settled;
     segment.echoes.resize(all);
     segment.high = Eigen::Vector3d(length, 1.0, 1.0);
-    return isNew(segment, config);
+    return SegmentRules(config).isNew(segment);
   };
   EXPECT_TRUE(isNewOf(5, 0, 10));
   EXPECT_FALSE(isNewOf(4, 0, 4));
@@ -81,7 +81,7 @@ TEST(Segmenter, APedestrianAtAWallIsOnlyHimself) {
   ASSERT_EQ(segments.size(), 1U);
   EXPECT_EQ(segments[0].echoes.size(), pedestrian);
   EXPECT_EQ(segments[0].echoes.front(), wall);
-  EXPECT_TRUE(isNew(segments[0], ObjectConfig{}));
+  EXPECT_TRUE(SegmentRules(ObjectConfig{}).isNew(segments[0]));
 }
 
 TEST(Segmenter, TwoPedestriansAtAWallAreTwoWithWhatIsUnobservedOfThem) {
@@ -214,10 +214,11 @@ TEST(Segmenter, AnEdgeIsThinAndFarThingsAreNot) {
   Segment edge;
   edge.low = Eigen::Vector3d(12.0, -1.0, 2.0);
   edge.high = Eigen::Vector3d(12.0, 1.0, 2.1);
-  EXPECT_TRUE(isThin(edge, Eigen::Vector3d::Zero()));
-  EXPECT_FALSE(isThin(edge, Eigen::Vector3d(-20.0, 0.0, 0.0))) << "beams are too sparse to tell";
+  EXPECT_TRUE(SegmentRules(ObjectConfig{}).isThin(edge, Eigen::Vector3d::Zero()));
+  EXPECT_FALSE(SegmentRules(ObjectConfig{}).isThin(edge, Eigen::Vector3d(-20.0, 0.0, 0.0)))
+      << "beams are too sparse to tell";
   edge.high.z() = 2.5;
-  EXPECT_FALSE(isThin(edge, Eigen::Vector3d::Zero()));
+  EXPECT_FALSE(SegmentRules(ObjectConfig{}).isThin(edge, Eigen::Vector3d::Zero()));
 }
 
 }  // namespace

@@ -1,0 +1,67 @@
+// What a segment's extent and places say of it (algorithm: "Segments", "Proofs of motion").
+#pragma once
+
+#include "core/objects/segment.h"
+#include "donex/config.h"
+
+namespace donex {
+
+struct SegmentOptions {
+  double longest = 25.0;           ///< beyond: a wall, a hedge, or objects that touch [m]
+  double least_new_share = 0.15;   ///< of all echoes that must be new: less is the frayed edge of something that stands
+  double unsure_new_share = 0.5;   ///< of all echoes that must be new where they are not surely so
+  double overhead = 2.0;           ///< above ground: above people's heads [m]
+  double upright_ratio = 0.3;      ///< height by length: about that of a car
+  double thin_angle = 0.02;        ///< seen under less, it is no higher than one or two beams of any sensor [rad]
+  double thin_reach = 20.0;        ///< farther away beams are too sparse to tell [m]
+  double long_extent = 2.0;        ///< about what walking pace covers in the birth window [m]
+  double followed_distance = 1.5;  ///< farther from its predicted place a followed object is not looked for [m]
+  double prediction_rim = 0.2;     ///< by which a predicted object's centre may leave the segment it is within [m]
+  double other_view_share = 0.5;   ///< of the extent that another view of the same object may not show
+  double frayed_ends = 0.7;        ///< and as much at its ends, where few echoes hit: counts for small objects [m]
+};
+
+/// Without memory: each answer follows from the segment, and from the prediction where there is one.
+class SegmentRules {
+ public:
+  explicit SegmentRules(const ObjectConfig& config, const SegmentOptions& options = {})
+      : config_(config), options_(options) {}
+
+  /// Longer than any vehicle: a wall, a hedge, or objects that touch.
+  bool isTooLong(const Segment& segment) const;
+
+  /// More of it is settled than not.
+  static bool isMostlySettled(const Segment& segment);
+
+  /// Enough of the segment is new, by number and against what is settled.
+  bool isNew(const Segment& segment) const;
+
+  /// All that is new of it lies above people's heads and is no higher than a beam or two: an eave, a branch, a cable.
+  /// `sensor` in the odometry frame.
+  bool isNewOverhead(const Segment& segment, const Eigen::Vector3d& sensor) const;
+
+  /// Not a patch of ground or a roof, whose shape fits wherever it is shifted along itself.
+  bool isUpright(const Segment& segment) const;
+
+  /// Near, and yet hardly higher than a beam: an edge, a wire, a branch. `sensor` in the odometry frame.
+  bool isThin(const Segment& segment, const Eigen::Vector3d& sensor) const;
+
+  /// Extents [m] that may be those of one object, seen from two places.
+  bool areAlike(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
+
+  /// Longer than what it moves in the birth window: its own side settles under it.
+  bool isLong(const Eigen::Vector3d& extent) const;
+
+  /// The segment may be the predicted object.
+  bool looksLike(const Segment& segment, const Prediction& object) const;
+  /// The predicted object is somewhere in the segment, which is more than that.
+  bool holds(const Segment& segment, const Prediction& object) const;
+
+  const SegmentOptions& options() const { return options_; }
+
+ private:
+  ObjectConfig config_;
+  SegmentOptions options_;
+};
+
+}  // namespace donex
