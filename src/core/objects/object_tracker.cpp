@@ -87,12 +87,12 @@ void ObjectTracker::follow(Track& track, double stamp, const Segment& segment) c
   if (elapsed > 0.0) {
     const Eigen::Vector3d velocity = (segment.center() - track.center) / elapsed;
     const bool is_second = track.last_seen <= track.first_seen;
-    const double newest = is_second ? 1.0 : 0.3;
+    const double newest = is_second ? 1.0 : 1.0 - std::exp(-elapsed / options_.velocity_time);
     track.velocity = (1.0 - newest) * track.velocity + newest * velocity;
   }
   track.center = segment.center();
   track.extent = segment.extent();
-  track.full_extent = track.extent.cwiseMax(0.9 * track.full_extent);
+  track.full_extent = track.extent.cwiseMax(std::exp(-elapsed / options_.extent_time) * track.full_extent);
   track.last_seen = stamp;
 }
 
