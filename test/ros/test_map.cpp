@@ -8,11 +8,13 @@
 
 #include <XmlRpcClient.h>
 #include <gtest/gtest.h>
+#include <message_filters/subscriber.h>
 #include <ros/master.h>
 #include <ros/network.h>
 #include <sensor_msgs/point_cloud2_iterator.h>
 #include <tf2_eigen/tf2_eigen.h>
 #include <tf2_ros/buffer.h>
+#include <tf2_ros/message_filter.h>
 #include <tf2_ros/transform_listener.h>
 
 #include "ros/manager_rig.h"
@@ -86,7 +88,7 @@ Voxel voxelOf(const Eigen::Vector3d& place) {
 /// The live drive's scans with their truth: where only moving objects were in them.
 class LiveDrive {
  public:
-  LiveDrive() { clouds_ = nh_.subscribe("/donex/labeled_points", 200, &LiveDrive::onCloud, this); }
+  LiveDrive() { placed_.registerCallback(&LiveDrive::onCloud, this); }
 
   std::size_t scans() const { return scans_; }
   ros::Time newest() const { return newest_; }
@@ -101,16 +103,9 @@ class LiveDrive {
   }
 
  private:
+  /// Called once tf reaches the cloud's stamp; clouds from before this process heard of tf are left out.
   void onCloud(const sensor_msgs::PointCloud2ConstPtr& cloud) {
-    constexpr double kPatience = 2.0;  // [s]
-    geometry_msgs::TransformStamped transform;
-    const std::string& frame = cloud->header.frame_id;
-    try {
-      transform = tf_.lookupTransform("odom", frame, cloud->header.stamp, ros::Duration(kPatience));
-    } catch (const tf2::TransformException&) {
-      return;  // from before this process heard of tf
-    }
-    add(*cloud, tf2::transformToEigen(transform));
+    add(*cloud, tf2::transformToEigen(tf_.lookupTransform("odom", cloud->header.frame_id, cloud->header.stamp)));
     newest_ = cloud->header.stamp;
     ++scans_;
   }
@@ -135,9 +130,10 @@ class LiveDrive {
   }
 
   ros::NodeHandle nh_;
-  tf2_ros::Buffer tf_;
+  tf2_ros::Buffer tf_{ros::Duration(120.0)};  // a busy machine falls behind
   tf2_ros::TransformListener listener_{tf_};
-  ros::Subscriber clouds_;
+  message_filters::Subscriber<sensor_msgs::PointCloud2> clouds_{nh_, "/donex/labeled_points", 200};
+  tf2_ros::MessageFilter<sensor_msgs::PointCloud2> placed_{clouds_, tf_, "odom", 200, nh_};
   std::set<Voxel> moving_, standing_;
   std::size_t scans_ = 0;
   ros::Time newest_;
