@@ -17,10 +17,10 @@ std::uint32_t cellOf(const Eigen::Vector3f& echo) {
   return is_inside ? static_cast<std::uint32_t>(row) * BirdView::kWidth + static_cast<std::uint32_t>(column) : kNoCell;
 }
 
-Verdict verdictOf(std::uint32_t truth, std::uint32_t prediction) {
-  if (!isScored(truth)) return isMoving(prediction) ? Verdict::kUnjudged : Verdict::kStatic;
-  if (isMoving(truth)) return isMoving(prediction) ? Verdict::kFound : Verdict::kMissed;
-  return isMoving(prediction) ? Verdict::kFalseAlarm : Verdict::kStatic;
+EchoOutcome outcomeOf(std::uint32_t truth, std::uint32_t prediction) {
+  if (!isScored(truth)) return isMoving(prediction) ? EchoOutcome::kUnjudged : EchoOutcome::kStatic;
+  if (isMoving(truth)) return isMoving(prediction) ? EchoOutcome::kFound : EchoOutcome::kMissed;
+  return isMoving(prediction) ? EchoOutcome::kFalseAlarm : EchoOutcome::kStatic;
 }
 
 }  // namespace
@@ -41,15 +41,15 @@ BirdView makeBirdView(std::size_t scan, const std::vector<Eigen::Vector3f>& echo
     view.cells.push_back(static_cast<std::uint16_t>(cell / BirdView::kWidth));
   }
   for (const auto& prediction : predictions) {
-    std::vector<std::uint8_t> verdicts(occupied.size(), 0);
+    std::vector<std::uint8_t> outcomes(occupied.size(), 0);
     for (std::size_t i = 0; i < prediction.size(); ++i) {
       const std::uint32_t cell = cellOf(echoes[i]);
       if (cell == kNoCell) continue;
       const auto at = std::lower_bound(occupied.begin(), occupied.end(), cell) - occupied.begin();
-      std::uint8_t& verdict = verdicts[static_cast<std::size_t>(at)];
-      verdict = std::max(verdict, static_cast<std::uint8_t>(verdictOf(truth[i], prediction[i])));
+      std::uint8_t& outcome = outcomes[static_cast<std::size_t>(at)];
+      outcome = std::max(outcome, static_cast<std::uint8_t>(outcomeOf(truth[i], prediction[i])));
     }
-    view.verdicts.push_back(std::move(verdicts));
+    view.outcomes.push_back(std::move(outcomes));
   }
   return view;
 }

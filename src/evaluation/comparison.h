@@ -13,7 +13,7 @@
 namespace donex {
 
 /// How an echo was labelled; where several fall into one cell of a picture, the last of these is shown.
-enum class Verdict : std::uint8_t {
+enum class EchoOutcome : std::uint8_t {
   kStatic,      ///< rightly static, or not judged and called static
   kUnjudged,    ///< called dynamic where the truth says nothing
   kFound,       ///< rightly dynamic
@@ -21,11 +21,11 @@ enum class Verdict : std::uint8_t {
   kMissed,      ///< dynamic in truth, called static
 };
 
-/// A scan from above: the occupied cells of a square around the sensor, and the verdict of each prediction there.
+/// A scan from above: the occupied cells of a square around the sensor, and the outcome of each prediction there.
 struct BirdView {
   std::size_t scan = 0;
   std::vector<std::uint16_t> cells;                 ///< column (along x), row (along y), ...
-  std::vector<std::vector<std::uint8_t>> verdicts;  ///< by prediction: a Verdict a cell
+  std::vector<std::vector<std::uint8_t>> outcomes;  ///< by prediction: an EchoOutcome per cell
 
   static constexpr double kCell = 0.2;  ///< [m]
   static constexpr int kWidth = 500;    ///< cells along an edge: 50 m to each side

@@ -111,8 +111,8 @@ json viewOf(const BirdView& view) {
               {"cell", BirdView::kCell},
               {"width", BirdView::kWidth},
               {"cells", base64(cells.data(), cells.size())},
-              {"verdicts", json::array()}};
-  for (const auto& verdicts : view.verdicts) result["verdicts"].push_back(base64(verdicts.data(), verdicts.size()));
+              {"outcomes", json::array()}};
+  for (const auto& outcomes : view.outcomes) result["outcomes"].push_back(base64(outcomes.data(), outcomes.size()));
   return result;
 }
 

@@ -80,7 +80,7 @@ TEST(Objects, AreFoundByHalfOfTheirEchoes) {
   EXPECT_EQ(evaluation.bySpeed()[2].total(), 10U);
 }
 
-TEST(BirdView, ShowsTheWorstVerdictOfACell) {
+TEST(BirdView, ShowsTheWorstOutcomeOfACell) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const std::vector<Eigen::Vector3f> echoes{{0.1F, 0.1F, 0},   {0.15F, 0.1F, 1}, {-0.1F, 0.1F, 0}, {10.1F, -5.1F, 0},
                                             {49.9F, 49.9F, 0}, {80, 0, 0},       {nan, 0, 0}};
@@ -88,11 +88,12 @@ TEST(BirdView, ShowsTheWorstVerdictOfACell) {
   const BirdView view = makeBirdView(7, echoes, truth, {prediction, {}});
   EXPECT_EQ(view.scan, 7U);
   EXPECT_EQ(view.cells, (std::vector<std::uint16_t>{300, 224, 249, 250, 250, 250, 499, 499}));
-  ASSERT_EQ(view.verdicts.size(), 2U);
-  const auto verdict = [](Verdict v) { return static_cast<std::uint8_t>(v); };
-  EXPECT_EQ(view.verdicts[0], (std::vector<std::uint8_t>{verdict(Verdict::kFalseAlarm), verdict(Verdict::kFound),
-                                                         verdict(Verdict::kMissed), verdict(Verdict::kUnjudged)}));
-  EXPECT_EQ(view.verdicts[1], std::vector<std::uint8_t>(4, 0));
+  ASSERT_EQ(view.outcomes.size(), 2U);
+  const auto outcome = [](EchoOutcome v) { return static_cast<std::uint8_t>(v); };
+  EXPECT_EQ(view.outcomes[0],
+            (std::vector<std::uint8_t>{outcome(EchoOutcome::kFalseAlarm), outcome(EchoOutcome::kFound),
+                                       outcome(EchoOutcome::kMissed), outcome(EchoOutcome::kUnjudged)}));
+  EXPECT_EQ(view.outcomes[1], std::vector<std::uint8_t>(4, 0));
 }
 
 /// A sequence with truth, and three predictions: perfect, one with a broken scan, one that is blind.
