@@ -1,22 +1,15 @@
 // Everything a user can set, with its default and unit; ranges and meanings stand in parameters.h.
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <string>
+#include <type_traits>
 #include <vector>
+
+#include "donex/method.h"
 
 namespace donex {
 
-/// DONEX in its forms, and the systems it is compared with (algorithm: "Comparison methods").
-enum class Method {
-  kDonex3d,
-  kDonex2d,
-  kDonex3dZBuffer,
-  kMotionVoxelGrid,
-  kRayTracing,
-  kRangeResidual,
-  kPeopleremover,
-};
 enum class Compensation { kScroll, kResample };
 enum class OdometrySource { kPose, kTwist, kTf, kNone, kLidar, kAuto };
 /// How a cloud says when each echo was measured: relative to its stamp or absolute, in which unit.
@@ -29,13 +22,6 @@ enum class TimeEncoding {
   kAbsoluteNanoseconds,
 };
 
-inline const std::vector<std::string>& namesOf(Method) {
-  static const std::vector<std::string> names{"donex_3d",    "donex_2d",       "donex_3d_zbuffer", "motion_voxel_grid",
-                                              "ray_tracing", "range_residual", "peopleremover"};
-  return names;
-}
-inline const std::string& nameOf(Method method) { return namesOf(method).at(static_cast<std::size_t>(method)); }
-
 inline const std::vector<std::string>& namesOf(Compensation) {
   static const std::vector<std::string> names{"scroll", "resample"};
   return names;
@@ -44,11 +30,16 @@ inline const std::vector<std::string>& namesOf(OdometrySource) {
   static const std::vector<std::string> names{"pose", "twist", "tf", "none", "lidar", "auto"};
   return names;
 }
-inline const std::string& nameOf(OdometrySource source) { return namesOf(source).at(static_cast<std::size_t>(source)); }
 inline const std::vector<std::string>& namesOf(TimeEncoding) {
   static const std::vector<std::string> names{"auto",        "relative_s", "relative_us",
                                               "relative_ns", "absolute_s", "absolute_ns"};
   return names;
+}
+
+/// What the parameter's value is called.
+template <class Enum>
+std::enable_if_t<std::is_enum_v<Enum>, const std::string&> nameOf(Enum value) {
+  return namesOf(value).at(static_cast<std::size_t>(value));
 }
 
 /// Region of interest in the vehicle frame [m]; an echo on the lower face is inside, on the upper outside.
@@ -87,6 +78,11 @@ struct ObjectConfig {
   bool motion = true;
   double stop_time = 0.5;  // [s]
 };
+
+/// Whether the ego motion comes as messages of odometry.
+constexpr bool usesOdometry(OdometrySource source) {
+  return source == OdometrySource::kPose || source == OdometrySource::kTwist;
+}
 
 /// Where the ego motion comes from, and how long a cloud waits for it.
 struct MotionConfig {
@@ -128,7 +124,8 @@ struct Config {
   CloudConfig cloud;
   NodeConfig node;
 
-  /// Every fault, one sentence each; empty when the configuration can be used.
+  /// Every value out of its range, one sentence each. Whether the grid fits into memory says faultsOf (memory_bound.h),
+  /// which asks this first.
   std::vector<std::string> faults() const;
 
   /// One of DONEX's grids, with at least one step beyond the paper.
@@ -139,7 +136,11 @@ struct Config {
   Config scrolling() const;
 };
 
-/// The paper's rule on this method's grid: every step beyond it off.
-Config paperConfig(Method method);
+/// Whether every parameter has the same value.
+bool operator==(const Config& a, const Config& b);
+inline bool operator!=(const Config& a, const Config& b) { return !(a == b); }
+
+/// The paper's rule on this method's grid: every step beyond it off. In the paper the grid is resampled.
+Config paperConfig(Method method, Compensation compensation = Compensation::kScroll);
 
 }  // namespace donex

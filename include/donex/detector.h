@@ -6,18 +6,12 @@
 
 #include "donex/config.h"
 #include "donex/explanation.h"
+#include "donex/grid_outline.h"
 #include "donex/object.h"
 #include "donex/proof.h"
 #include "donex/scan.h"
 
 namespace donex {
-
-/// An axis-aligned box of the grid in a frame of its own.
-struct GridOutline {
-  Eigen::Isometry3d odom_from_grid = Eigen::Isometry3d::Identity();
-  Eigen::Vector3d min_corner = Eigen::Vector3d::Zero();  ///< grid frame [m]
-  Eigen::Vector3d max_corner = Eigen::Vector3d::Zero();  ///< grid frame [m]
-};
 
 /// Labels the echoes of a stream of scans. Not thread-safe: one stream, one detector.
 class Detector {
@@ -57,7 +51,7 @@ class Detector {
   virtual std::size_t memoryBytes() const = 0;
 };
 
-/// Throws std::invalid_argument that lists every fault of the configuration at once.
+/// Throws std::invalid_argument that lists every fault of the configuration at once (faultsOf, memory_bound.h).
 void requireSound(const Config& config);
 
 /// Builds the method that `config.method` names. Throws as requireSound does, and for a method that cannot run live

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
+#include <vector>
 
 #include "donex/config.h"
 
@@ -16,5 +18,9 @@ constexpr std::size_t kUsualScan = 120000;  // echoes; what a configuration is j
 ///    has (a wood may). What a sensor does not cover is reserved, not used: the system gives less.
 /// For the comparison methods: their dense grids alone.
 double memoryBound(const Config& config, std::size_t echoes);
+
+/// Every fault of a configuration, one sentence each; empty when it can be used. What Config::faults() says, and where
+/// that is nothing, whether the grid needs more than `memory_limit` for a usual scan.
+std::vector<std::string> faultsOf(const Config& config);
 
 }  // namespace donex

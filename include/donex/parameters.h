@@ -1,33 +1,40 @@
 // Every parameter with its name, unit, range and meaning: the one place for them.
 #pragma once
 
+#include <string>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
 #include "donex/config.h"
 
 namespace donex {
 
+/// Parameters that are shown together.
+enum class ParameterGroup { kClassifier, kRegion, kEvidence, kObjects, kMotion, kClouds, kNode };
+
+inline const char* nameOf(ParameterGroup group) {
+  constexpr const char* kNames[] = {"Classifier", "Region", "Evidence", "Objects", "Motion", "Clouds", "Node"};
+  return kNames[static_cast<std::size_t>(group)];
+}
+
 /// How a parameter is called and what it means.
 struct ParameterInfo {
   const char* name;
-  const char* unit;     ///< empty where it has no unit
-  const char* meaning;  ///< one sentence
-  bool reconfigurable;  ///< also in dynamic_reconfigure
+  const char* unit;                                    ///< empty where it has no unit
+  const char* meaning;                                 ///< one sentence
+  bool reconfigurable;                                 ///< also in dynamic_reconfigure
+  ParameterGroup group = ParameterGroup::kClassifier;  ///< visitParameters knows it
 };
 
 template <class Visitor>
 void visitClassifier(Config& config, Visitor& visit) {
   visit(ParameterInfo{"method", "",
                       "classifier: DONEX, the paper in 3D with a z-buffer for its see-through, or a system it is "
-                      "compared with (peopleremover judges whole drives only, never live)",
+                      "compared with (the node refuses those that judge whole drives only)",
                       true},
         config.method);
   visit(ParameterInfo{"voxel_size", "m", "edge length of a voxel", true}, config.voxel_size, 0.02, 2.0);
-  Region& r = config.region;
-  visit(ParameterInfo{"x_min", "m", "region of interest, vehicle frame, rear", true}, r.x_min, -500.0, 500.0);
-  visit(ParameterInfo{"x_max", "m", "region of interest, vehicle frame, front", true}, r.x_max, -500.0, 500.0);
-  visit(ParameterInfo{"y_min", "m", "region of interest, vehicle frame, right", true}, r.y_min, -500.0, 500.0);
-  visit(ParameterInfo{"y_max", "m", "region of interest, vehicle frame, left", true}, r.y_max, -500.0, 500.0);
-  visit(ParameterInfo{"z_min", "m", "region of interest, vehicle frame, bottom", true}, r.z_min, -100.0, 100.0);
-  visit(ParameterInfo{"z_max", "m", "region of interest, vehicle frame, top", true}, r.z_max, -100.0, 100.0);
   visit(ParameterInfo{"compensation", "",
                       "voxel shift of the paper: scroll the grid along the axes of the odometry frame, or resample its "
                       "contents into the vehicle frame; with evidence the grid always scrolls",
@@ -40,6 +47,16 @@ void visitClassifier(Config& config, Visitor& visit) {
         config.memory_limit, 10, 100000);
   visit(ParameterInfo{"threads", "", "threads that the grids of the paper may use; labels do not depend on it", true},
         config.threads, 1, 64);
+}
+
+template <class Visitor>
+void visitRegion(Region& r, Visitor& visit) {
+  visit(ParameterInfo{"x_min", "m", "region of interest, vehicle frame, rear", true}, r.x_min, -500.0, 500.0);
+  visit(ParameterInfo{"x_max", "m", "region of interest, vehicle frame, front", true}, r.x_max, -500.0, 500.0);
+  visit(ParameterInfo{"y_min", "m", "region of interest, vehicle frame, right", true}, r.y_min, -500.0, 500.0);
+  visit(ParameterInfo{"y_max", "m", "region of interest, vehicle frame, left", true}, r.y_max, -500.0, 500.0);
+  visit(ParameterInfo{"z_min", "m", "region of interest, vehicle frame, bottom", true}, r.z_min, -100.0, 100.0);
+  visit(ParameterInfo{"z_max", "m", "region of interest, vehicle frame, top", true}, r.z_max, -100.0, 100.0);
 }
 
 template <class Visitor>
@@ -149,17 +166,49 @@ void visitNode(NodeConfig& n, Visitor& visit) {
   visit(ParameterInfo{"marker_grid", "", "marker of the outline of the grid", true}, n.marker_grid);
 }
 
+/// Says in which group a parameter is, and hands it on.
+template <class Visitor>
+struct GroupVisitor {
+  ParameterGroup group;
+  Visitor& visit;
+
+  template <class Value, class... Range>
+  void operator()(ParameterInfo info, Value& value, Range... range) {
+    info.group = group;
+    visit(info, value, range...);
+  }
+};
+
 /// Shows `visit` every parameter, in the order of the documentation, as one of
 ///   visit(info, double&, min, max)   visit(info, int&, min, max)   visit(info, bool&)
 ///   visit(info, std::string&)        visit(info, Enum&)  with namesOf(Enum) as its values.
 template <class Visitor>
 void visitParameters(Config& config, Visitor&& visit) {
-  visitClassifier(config, visit);
-  visitEvidence(config.evidence, visit);
-  visitObjects(config.objects, visit);
-  visitMotion(config.motion, visit);
-  visitCloud(config.cloud, visit);
-  visitNode(config.node, visit);
+  const auto in = [&](ParameterGroup group) { return GroupVisitor<std::remove_reference_t<Visitor>>{group, visit}; };
+  auto classifier = in(ParameterGroup::kClassifier), region = in(ParameterGroup::kRegion),
+       evidence = in(ParameterGroup::kEvidence), objects = in(ParameterGroup::kObjects),
+       motion = in(ParameterGroup::kMotion), clouds = in(ParameterGroup::kClouds), node = in(ParameterGroup::kNode);
+  visitClassifier(config, classifier);
+  visitRegion(config.region, region);
+  visitEvidence(config.evidence, evidence);
+  visitObjects(config.objects, objects);
+  visitMotion(config.motion, motion);
+  visitCloud(config.cloud, clouds);
+  visitNode(config.node, node);
+}
+
+/// A parameter with its value; that of an enumeration is its name.
+struct Parameter {
+  ParameterInfo info;
+  std::variant<bool, int, double, std::string> value;
+};
+
+/// Every parameter, in the order of the documentation.
+std::vector<Parameter> parametersOf(const Config& config);
+
+/// Whether a parameter belongs to the steps beyond the paper's rule.
+constexpr bool isBeyondPaper(const ParameterInfo& info) {
+  return info.group == ParameterGroup::kEvidence || info.group == ParameterGroup::kObjects;
 }
 
 }  // namespace donex

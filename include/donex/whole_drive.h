@@ -8,7 +8,7 @@
 namespace donex {
 
 /// True for methods that cannot run live: makeDetector refuses them, makeWholeDriveDetector builds them.
-inline bool needsWholeDrive(Method method) { return method == Method::kPeopleremover; }
+inline bool needsWholeDrive(Method method) { return infoOf(method).needs_whole_drive; }
 
 /// Takes all scans of a drive several times over, in the same order each time. Labels are right in the last pass; in
 /// those before all of them are 0. reset() throws std::logic_error once a scan has been taken: the passes would no

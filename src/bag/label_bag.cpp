@@ -144,8 +144,7 @@ LabelBagSummary chooseTopics(rosbag::View& view, const LabelBagOptions& options,
   LabelBagSummary summary;
   summary.points = chooseTopic(view, options.points, "sensor_msgs/PointCloud2", file, "--points");
   const OdometrySource source = options.config.motion.source;
-  const bool needs_odometry = source == OdometrySource::kPose || source == OdometrySource::kTwist;
-  if (needs_odometry) summary.odom = chooseTopic(view, options.odom, "nav_msgs/Odometry", file, "--odom");
+  if (usesOdometry(source)) summary.odom = chooseTopic(view, options.odom, "nav_msgs/Odometry", file, "--odom");
   summary.motion = motionOf(source, summary.odom, options.config.motion);
   return summary;
 }

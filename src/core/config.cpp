@@ -1,9 +1,9 @@
 #include "donex/config.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
-#include "donex/memory_bound.h"
 #include "donex/parameters.h"
 
 namespace donex {
@@ -39,16 +39,39 @@ void checkExtent(const char* axis, double min, double max, double voxel_size, st
   faults.push_back(text.str());
 }
 
+/// Switches off what goes beyond the paper's rule.
+struct StepsOff {
+  void operator()(const ParameterInfo& info, bool& value) const {
+    if (isBeyondPaper(info)) value = false;
+  }
+  template <class Anything, class... Range>
+  void operator()(const ParameterInfo&, const Anything&, const Range&...) const {}
+};
+
+struct Collector {
+  std::vector<Parameter>& parameters;
+
+  template <class Value, class... Range>
+  void operator()(const ParameterInfo& info, const Value& value, const Range&...) {
+    Parameter& parameter = parameters.emplace_back();
+    parameter.info = info;
+    if constexpr (std::is_enum_v<Value>) {
+      parameter.value.emplace<std::string>(nameOf(value));
+    } else {
+      parameter.value.emplace<Value>(value);
+    }
+  }
+};
+
 }  // namespace
 
 bool Config::hasEvidence() const {
-  const bool may_have = method == Method::kDonex3d || method == Method::kDonex2d;
-  return may_have && (evidence.any() || objects.enabled);
+  return infoOf(method).kind == MethodKind::kDonex && (evidence.any() || objects.enabled);
 }
 
 bool Config::isPaper() const {
-  const bool may_be = method == Method::kDonex3d || method == Method::kDonex2d;
-  return method == Method::kDonex3dZBuffer || (may_be && !hasEvidence());
+  const MethodKind kind = infoOf(method).kind;
+  return kind == MethodKind::kPaper || (kind == MethodKind::kDonex && !hasEvidence());
 }
 
 Config Config::scrolling() const {
@@ -57,13 +80,25 @@ Config Config::scrolling() const {
   return config;
 }
 
-Config paperConfig(Method method) {
+Config paperConfig(Method method, Compensation compensation) {
   Config config;
   config.method = method;
-  EvidenceConfig& e = config.evidence;
-  e.free_evidence = e.careful_sight = e.birth_age = e.neighbourhood = e.ground = false;
-  config.objects.enabled = config.objects.motion = false;
+  config.compensation = compensation;
+  visitParameters(config, StepsOff());
   return config;
+}
+
+std::vector<Parameter> parametersOf(const Config& config) {
+  std::vector<Parameter> parameters;
+  Config copy = config;
+  visitParameters(copy, Collector{parameters});
+  return parameters;
+}
+
+bool operator==(const Config& a, const Config& b) {
+  const std::vector<Parameter> of_a = parametersOf(a), of_b = parametersOf(b);
+  const auto is_same = [](const Parameter& x, const Parameter& y) { return x.value == y.value; };
+  return std::equal(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(), is_same);
 }
 
 std::vector<std::string> Config::faults() const {
@@ -73,14 +108,6 @@ std::vector<std::string> Config::faults() const {
   checkExtent("x", region.x_min, region.x_max, voxel_size, faults);
   checkExtent("y", region.y_min, region.y_max, voxel_size, faults);
   checkExtent("z", region.z_min, region.z_max, voxel_size, faults);
-  if (!faults.empty()) return faults;  // a region without bounds cannot be counted in cells
-  const double megabytes = memoryBound(*this, kUsualScan) / 1e6;
-  if (megabytes > memory_limit) {
-    std::ostringstream text;
-    text << "the grid needs " << megabytes << " MB for scans of " << kUsualScan << " echoes, more than memory_limit ("
-         << memory_limit << " MB): choose a smaller region or a larger voxel_size";
-    faults.push_back(text.str());
-  }
   return faults;
 }
 

@@ -18,7 +18,7 @@ class SettingError : public DataError {
 
 /// `base`, by default the defaults, overridden by the file: a flat map of parameter names to values. Strict: throws
 /// DataError with every fault and its line (not a map, unknown or duplicate names, wrong type, out of range, what
-/// Config::faults() says). An empty file sets nothing. Numbers are what YAML 1.1, thus rosparam, takes for numbers.
+/// faultsOf says). An empty file sets nothing. Numbers are what YAML 1.1, thus rosparam, takes for numbers.
 Config readConfigFile(const std::filesystem::path& file, const Config& base = Config());
 
 /// Overrides `config` by settings "name=value", later ones over earlier ones; as strict. Throws SettingError.

@@ -6,6 +6,7 @@
 
 #include <fmt/ranges.h>
 
+#include "donex/memory_bound.h"
 #include "donex/parameters.h"
 
 namespace donex {
@@ -137,7 +138,7 @@ class SettingsVisitor {
   Faults& faults_;
 };
 
-/// A fault of Config::faults() starts with a parameter's name: tell where that was set.
+/// A fault of faultsOf starts with a parameter's name: tell where that was set.
 std::string located(const std::string& fault, const Settings& settings, const std::string& source) {
   for (const auto& [name, setting] : settings) {
     if (fault.find(name + " is ") != std::string::npos) return setting.where + ": " + fault;
@@ -152,7 +153,7 @@ void apply(Settings& settings, Config& config, const std::string& source, Faults
   for (const auto& [name, setting] : settings) {
     if (!setting.used) faults.add(fmt::format("{}: there is no parameter {}", setting.where, name));
   }
-  for (const std::string& fault : config.faults()) faults.add(located(fault, settings, source));
+  for (const std::string& fault : faultsOf(config)) faults.add(located(fault, settings, source));
 }
 
 }  // namespace donex

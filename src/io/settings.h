@@ -20,7 +20,7 @@ struct Setting {
 using Settings = std::map<std::string, Setting>;  ///< by the parameter's name
 
 /// Overrides `config`. Adds a fault for every unknown name, wrong type and value out of range, at the place where it
-/// was given, and for what Config::faults() says of the whole, at `source` where no place is to blame.
+/// was given, and for what faultsOf says of the whole, at `source` where no place is to blame.
 void apply(Settings& settings, Config& config, const std::string& source, Faults& faults);
 
 }  // namespace donex

@@ -34,38 +34,29 @@ struct Contender {
   Config config;
 };
 
-Config defaultOf(Method method) {
-  Config config;
-  config.method = method;
-  return config;
+/// A method as it is by default.
+Contender defaultOf(Method method) {
+  const MethodInfo& info = infoOf(method);
+  Contender contender{{info.name, info.what, info.source, !info.needs_whole_drive}, Config()};
+  contender.config.method = method;
+  return contender;
 }
 
-/// As config/paper_3d.yaml has it.
-Config paperOf(Method method) {
-  Config config = paperConfig(method);
-  config.compensation = Compensation::kResample;
-  return config;
+/// The paper's rule alone, as config/paper_3d.yaml has it.
+Contender paperOf(Method method, const char* name, const char* what) {
+  return {{name, what, infoOf(method).source, true}, paperConfig(method, Compensation::kResample)};
 }
 
 std::vector<Contender> allContenders() {
-  constexpr const char* kPaper = "Stralau & Fu, DONEX";
-  return {
-      {{"donex_3d", "3D grid with evidence and objects: this package's default", kPaper, true},
-       defaultOf(Method::kDonex3d)},
-      {{"donex_2d", "2D grid with evidence and objects", kPaper, true}, defaultOf(Method::kDonex2d)},
-      {{"paper_3d", "the paper's 3D rule alone, see-through by traversal", kPaper, true}, paperOf(Method::kDonex3d)},
-      {{"paper_3d_zbuffer", "the same, see-through by a z-buffer", "Hu & Li 2012, set aside by the paper", true},
-       paperOf(Method::kDonex3dZBuffer)},
-      {{"paper_2d", "the paper's 2D rule alone, no line of sight", kPaper, true}, paperOf(Method::kDonex2d)},
-      {{"motion_voxel_grid", "ground planes by region, static and dynamic counters of voxels", "Asvadi et al. 2016",
-        true},
-       defaultOf(Method::kMotionVoxelGrid)},
-      {{"ray_tracing", "mesh of the scan before, probability, Dempster-Shafer", "Lee, Kim & Jo 2019", true},
-       defaultOf(Method::kRayTracing)},
-      {{"range_residual", "residual image of two scans, a threshold", "Chen et al. 2021, without learning", true},
-       defaultOf(Method::kRangeResidual)},
-      {{"peopleremover", "what any line of sight of the drive sees through", "Schauer & Nuechter 2018", false},
-       defaultOf(Method::kPeopleremover)}};
+  std::vector<Contender> all{
+      defaultOf(Method::kDonex3d), defaultOf(Method::kDonex2d),
+      paperOf(Method::kDonex3d, "paper_3d", "the paper's 3D rule alone, see-through by traversal"),
+      paperOf(Method::kDonex3dZBuffer, "paper_3d_zbuffer", "the same, see-through by a z-buffer"),
+      paperOf(Method::kDonex2d, "paper_2d", "the paper's 2D rule alone, no line of sight")};
+  for (const Method method : allMethods()) {
+    if (infoOf(method).kind == MethodKind::kComparison) all.push_back(defaultOf(method));
+  }
+  return all;
 }
 
 std::vector<Contender> chooseContenders(const std::string& names) {
@@ -148,7 +139,7 @@ void fillTable1(Comparison& comparison, const std::string& directory, const std:
   const SequenceReader sequence(directory);
   const std::size_t scans = scansOf(sequence, 30);
   const auto measure = [&](Method method, double voxel_size) {
-    Config config = paperOf(method);
+    Config config = paperConfig(method, Compensation::kResample);
     config.voxel_size = voxel_size;
     config.region = {0.0, 75.0, -25.0, 25.0, -4.0, 6.0};
     const fs::path place = fs::path(out) / "table_1" / fmt::format("{}_{}", nameOf(method), numberText(voxel_size));

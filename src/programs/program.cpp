@@ -30,6 +30,23 @@ int parseArguments(CLI::App& app, int argc, char** argv) {
   }
 }
 
+/// What there is for --method, a line each, columns separated by tabs; the run ends.
+void listMethods() {
+  for (const Method method : allMethods()) {
+    const MethodInfo& info = infoOf(method);
+    const char* kind = info.kind == MethodKind::kDonex ? "donex" : info.needs_whole_drive ? "whole drive" : "live";
+    fmt::print("{}\t{}\t{}\t{}\n", info.name, kind, info.what, info.source);
+  }
+  throw CLI::Success();
+}
+
+std::vector<std::string> linesOf(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
 int runBody(const CLI::App& app, const std::function<void()>& body) {
   try {
     body();
@@ -81,21 +98,24 @@ std::size_t scansOf(const SequenceReader& sequence, std::size_t frames) {
 }
 
 ConfigOptions::ConfigOptions(CLI::App& app) {
-  app.add_option("--config", file_, "a file of parameters, as the node reads it");
+  app.add_flag_callback("--list-methods", listMethods, "every method: its name, kind, what it does, and its source");
+  // Joined, not lists: a list would swallow the positional arguments behind it.
+  app.add_option("--config", files_,
+                 "a file of parameters, as the node reads it; may be repeated, the later over the earlier")
+      ->multi_option_policy(CLI::MultiOptionPolicy::Join);
   app.add_option("--method", method_, "the classifier, over --config");
   app.add_option("--voxel-size", voxel_size_, "edge length of a voxel [m], over --config");
-  // Joined, not a list: a list would swallow the positional arguments behind it.
   app.add_option("--set", settings_, "name=value: any parameter, over all others; may be repeated")
       ->multi_option_policy(CLI::MultiOptionPolicy::Join);
 }
 
 Config ConfigOptions::config(const Config& base) const {
-  Config config = file_.empty() ? base : readConfigFile(file_, base);
+  Config config = base;
+  for (const std::string& file : linesOf(files_)) config = readConfigFile(file, config);
   std::vector<std::string> settings;
   if (!method_.empty()) settings.push_back("method=" + method_);
   if (!voxel_size_.empty()) settings.push_back("voxel_size=" + voxel_size_);
-  std::istringstream joined(settings_);
-  for (std::string setting; std::getline(joined, setting);) settings.push_back(setting);
+  for (const std::string& setting : linesOf(settings_)) settings.push_back(setting);
   applySettings(config, settings);
   return config;
 }

@@ -49,7 +49,7 @@ class ConfigOptions {
   Config config(const Config& base = Config()) const;
 
  private:
-  std::string file_;
+  std::string files_;  ///< one line each
   std::string method_;
   std::string voxel_size_;
   std::string settings_;  ///< one line each

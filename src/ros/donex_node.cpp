@@ -28,8 +28,6 @@ constexpr double kRetryPeriod = 0.01;  // waiting clouds are asked about this of
 /// the callbacks, which only enqueue, hand all of it to the pipeline, which bounds and counts.
 constexpr std::uint32_t kUnbounded = 0;
 
-bool usesOdometry(OdometrySource source) { return source == OdometrySource::kPose || source == OdometrySource::kTwist; }
-
 /// A call to a function as an entry of a callback queue.
 class QueuedCall : public ros::CallbackInterface {
  public:

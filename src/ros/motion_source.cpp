@@ -57,8 +57,6 @@ OdometryVerdict verdictOn(AddResult result, double stamp) {
   return refusedFor(OdometryRefusal::kNonFinite, textOf("odometry of ", stamp, " s is not finite"));
 }
 
-bool isOdometry(OdometrySource source) { return source == OdometrySource::kPose || source == OdometrySource::kTwist; }
-
 /// The mean velocity from one pose to the next, in the axes of the first.
 Twist twistBetween(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, double elapsed) {
   const Eigen::Isometry3d motion = from.inverse() * to;
@@ -100,7 +98,7 @@ void MotionSource::reset() {
   mounting_.reset();
 }
 
-bool MotionSource::wantsOdometry() const { return isOdometry(source_) || source_ == OdometrySource::kAuto; }
+bool MotionSource::wantsOdometry() const { return usesOdometry(source_) || source_ == OdometrySource::kAuto; }
 
 void MotionSource::learn(const std::vector<std::uint8_t>& dynamic) {
   if (source_ == OdometrySource::kLidar) scan_odometry_.learn(dynamic);

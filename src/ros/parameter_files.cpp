@@ -1,7 +1,6 @@
 #include "ros/parameter_files.h"
 
 #include <algorithm>
-#include <functional>
 #include <list>
 #include <sstream>
 #include <stdexcept>
@@ -14,14 +13,6 @@
 
 namespace donex {
 namespace {
-
-template <class Part>
-bool isWithin(const Part& part, const void* value) {
-  const auto* begin = reinterpret_cast<const char*>(&part);
-  const auto* at = static_cast<const char*>(value);
-  const std::less<> less;
-  return !less(at, begin) && less(at, begin + sizeof part);
-}
 
 /// Shortest decimal form that reads back as the same number, always with a point: YAML and Python see a float.
 std::string textOf(double value) {
@@ -38,17 +29,12 @@ std::string textOf(double value) {
 }
 std::string textOf(int value) { return std::to_string(value); }
 
-template <class Enum>
-const std::string& nameOf(Enum value) {
-  return namesOf(value)[static_cast<std::size_t>(value)];
-}
-
 std::string quoted(const std::string& text) { return '"' + text + '"'; }
 
 /// Text by group, the groups in the order in which they first appear.
 class GroupedText {
  public:
-  std::ostream& in(const std::string& group) {
+  std::ostream& in(ParameterGroup group) {
     for (auto& [name, text] : groups_) {
       if (name == group) return text;
     }
@@ -56,36 +42,37 @@ class GroupedText {
   }
   std::string text(const std::string& before_title, const std::string& after_title) const {
     std::ostringstream all;
-    for (const auto& [name, text] : groups_) all << '\n' << before_title << name << after_title << '\n' << text.str();
+    for (const auto& [group, text] : groups_) {
+      all << '\n' << before_title << nameOf(group) << after_title << '\n' << text.str();
+    }
     return all.str();
   }
 
  private:
-  std::list<std::pair<std::string, std::ostringstream>> groups_;
+  std::list<std::pair<ParameterGroup, std::ostringstream>> groups_;
 };
 
 struct YamlWriter {
-  const Config& config;
   GroupedText& out;
 
   template <class Number>
   void operator()(const ParameterInfo& info, const Number& value, Number min, Number max) {
     const std::string unit = *info.unit == '\0' ? "" : std::string(" ") + info.unit;
-    write(info, &value, textOf(value), textOf(min) + " to " + textOf(max) + unit);
+    write(info, textOf(value), textOf(min) + " to " + textOf(max) + unit);
   }
   void operator()(const ParameterInfo& info, const bool& value) {
-    write(info, &value, value ? "true" : "false", "true, false");
+    write(info, value ? "true" : "false", "true, false");
   }
-  void operator()(const ParameterInfo& info, const std::string& value) { write(info, &value, quoted(value), "a name"); }
+  void operator()(const ParameterInfo& info, const std::string& value) { write(info, quoted(value), "a name"); }
   template <class Enum, class = std::enable_if_t<std::is_enum_v<Enum>>>
   void operator()(const ParameterInfo& info, const Enum& value) {
-    write(info, &value, nameOf(value), fmt::format("{}", fmt::join(namesOf(value), ", ")));
+    write(info, nameOf(value), fmt::format("{}", fmt::join(namesOf(value), ", ")));
   }
 
-  void write(const ParameterInfo& info, const void* member, const std::string& value, const std::string& range) {
-    out.in(groupOf(config, member)) << "# " << info.meaning << '\n'
-                                    << "# (" << range << (info.reconfigurable ? "; while running, too)\n" : ")\n")
-                                    << info.name << ": " << value << '\n';
+  void write(const ParameterInfo& info, const std::string& value, const std::string& range) {
+    out.in(info.group) << "# " << info.meaning << '\n'
+                       << "# (" << range << (info.reconfigurable ? "; while running, too)\n" : ")\n") << info.name
+                       << ": " << value << '\n';
   }
 };
 
@@ -96,94 +83,69 @@ std::string description(const std::string& text) {
 }
 
 struct CfgWriter {
-  const Config& config;
   GroupedText& out;
 
   template <class Number>
   void operator()(const ParameterInfo& info, const Number& value, Number min, Number max) {
     const char* type = std::is_same_v<Number, double> ? "double_t" : "int_t";
-    write(info, &value, type, textOf(value), ", " + textOf(min) + ", " + textOf(max));
+    write(info, type, textOf(value), ", " + textOf(min) + ", " + textOf(max));
   }
-  void operator()(const ParameterInfo& info, const bool& value) {
-    write(info, &value, "bool_t", value ? "True" : "False", "");
-  }
-  void operator()(const ParameterInfo& info, const std::string& value) {
-    write(info, &value, "str_t", quoted(value), "");
-  }
+  void operator()(const ParameterInfo& info, const bool& value) { write(info, "bool_t", value ? "True" : "False", ""); }
+  void operator()(const ParameterInfo& info, const std::string& value) { write(info, "str_t", quoted(value), ""); }
   template <class Enum, class = std::enable_if_t<std::is_enum_v<Enum>>>
   void operator()(const ParameterInfo& info, const Enum& value) {
     if (!info.reconfigurable) return;
-    std::ostream& text = out.in(groupOf(config, &value));
+    std::ostream& text = out.in(info.group);
     text << info.name << "_enum = gen.enum([\n";
     for (const std::string& name : namesOf(value)) {
       text << "    gen.const(" << quoted(info.name + ("_" + name)) << ", str_t, " << quoted(name) << ", "
            << quoted(name) << "),\n";
     }
     text << "], " << description(info.meaning) << ")\n";
-    write(info, &value, "str_t", quoted(nameOf(value)), ", edit_method=" + std::string(info.name) + "_enum");
+    write(info, "str_t", quoted(nameOf(value)), ", edit_method=" + std::string(info.name) + "_enum");
   }
 
-  void write(const ParameterInfo& info, const void* member, const std::string& type, const std::string& value,
-             const std::string& more) {
+  void write(const ParameterInfo& info, const std::string& type, const std::string& value, const std::string& more) {
     if (!info.reconfigurable) return;
     const std::string unit = *info.unit == '\0' ? "" : std::string(" [") + info.unit + "]";
-    out.in(groupOf(config, member)) << "group.add(" << quoted(info.name) << ", " << type << ", "
-                                    << levelOf(config, member) << ",\n          " << description(info.meaning + unit)
-                                    << ",\n          " << value << more << ")\n";
+    out.in(info.group) << "group.add(" << quoted(info.name) << ", " << type << ", " << levelOf(info) << ",\n          "
+                       << description(info.meaning + unit) << ",\n          " << value << more << ")\n";
   }
-};
-
-/// Whatever can be switched off among the steps beyond the paper.
-struct SwitchesOff {
-  const Config& config;
-  std::ostringstream& out;
-
-  void operator()(const ParameterInfo& info, const bool& value) {
-    const bool is_step = isWithin(config.evidence, &value) || isWithin(config.objects, &value);
-    if (is_step) out << info.name << ": false\n";
-  }
-  template <class... Anything>
-  void operator()(const ParameterInfo&, const Anything&...) {}
 };
 
 }  // namespace
 
-std::string groupOf(const Config& config, const void* value) {
-  if (isWithin(config.region, value)) return "Region";
-  if (isWithin(config.evidence, value)) return "Evidence";
-  if (isWithin(config.objects, value)) return "Objects";
-  if (isWithin(config.motion, value)) return "Motion";
-  if (isWithin(config.cloud, value)) return "Clouds";
-  if (isWithin(config.node, value)) return "Node";
-  return "Classifier";
-}
-
-ReconfigureLevel levelOf(const Config& config, const void* value) {
-  return isWithin(config.node, value) ? kSwitch : kRebuildsGrid;
+ReconfigureLevel levelOf(const ParameterInfo& info) {
+  return info.group == ParameterGroup::kNode ? kSwitch : kRebuildsGrid;
 }
 
 std::string defaultYaml() {
   Config config;
   GroupedText groups;
-  visitParameters(config, YamlWriter{config, groups});
+  visitParameters(config, YamlWriter{groups});
   return "# Every parameter with its default. Written from the code by donex_write_parameters: change it there.\n" +
          groups.text("# --- ", " ---");
 }
 
 std::string paperYaml(Method method) {
-  Config config;
+  const Config paper = paperConfig(method, Compensation::kResample);
+  const std::vector<Parameter> defaults = parametersOf(Config()), ours = parametersOf(paper);
   std::ostringstream out;
-  visitParameters(config, SwitchesOff{config, out});
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    const bool is_step_off = isBeyondPaper(ours[i].info) && ours[i].value != defaults[i].value;
+    if (is_step_off) out << ours[i].info.name << ": false\n";
+  }
   return "# The paper's method exactly; what is not named here is as in default.yaml. Written from the code by\n"
          "# donex_write_parameters: change it there.\n"
          "method: " +
-         nameOf(method) + "\ncompensation: resample\n\n# --- Steps beyond the paper ---\n" + out.str();
+         nameOf(paper.method) + "\ncompensation: " + nameOf(paper.compensation) +
+         "\n\n# --- Steps beyond the paper ---\n" + out.str();
 }
 
 std::string reconfigureCfg() {
   Config config;
   GroupedText groups;
-  visitParameters(config, CfgWriter{config, groups});
+  visitParameters(config, CfgWriter{groups});
   return "#!/usr/bin/env python3\n"
          "# The parameters that can be changed while running. Written from the code by donex_write_parameters:\n"
          "# change it there.\n"

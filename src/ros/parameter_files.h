@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "donex/config.h"
+#include "donex/parameters.h"
 
 namespace donex {
 
@@ -15,11 +15,8 @@ enum ReconfigureLevel : std::uint32_t {
   kSwitch = 2,        ///< outputs only
 };
 
-/// The group in which a parameter is shown; `value` is a member of `config`.
-std::string groupOf(const Config& config, const void* value);
-
-/// What a change of the parameter means; `value` is a member of `config`.
-ReconfigureLevel levelOf(const Config& config, const void* value);
+/// What a change of the parameter means.
+ReconfigureLevel levelOf(const ParameterInfo& info);
 
 /// Every parameter with its default, unit, range and meaning, as rosparam reads it.
 std::string defaultYaml();

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 #include <type_traits>
 
 #include <dynamic_reconfigure/config_tools.h>
 #include <fmt/ranges.h>
 
+#include "donex/memory_bound.h"
 #include "donex/parameters.h"
-#include "ros/parameter_files.h"
 
 namespace donex {
 namespace {
@@ -112,7 +111,7 @@ struct MessageWriter {
   void operator()(const ParameterInfo& info, const std::string& value) { append(info, value); }
   template <class Enum, class = IfEnum<Enum>>
   void operator()(const ParameterInfo& info, const Enum& value) {
-    append(info, namesOf(value)[static_cast<std::size_t>(value)]);
+    append(info, nameOf(value));
   }
   template <class Value>
   void append(const ParameterInfo& info, const Value& value) {
@@ -141,35 +140,12 @@ struct MessageReader {
   }
 };
 
-/// Everything but the node's switches, as text.
-struct DetectionValues {
-  const Config& config;
-  std::ostringstream& out;
-
-  template <class Value, class... Range>
-  void operator()(const ParameterInfo& info, const Value& value, const Range&...) {
-    if (levelOf(config, &value) != kRebuildsGrid) return;
-    out << info.name << ' ';
-    if constexpr (std::is_enum_v<Value>) {
-      out << static_cast<int>(value) << ' ';
-    } else {
-      out << std::hexfloat << value << ' ';
-    }
-  }
-};
-
-std::string detectionValues(Config config) {
-  std::ostringstream out;
-  visitParameters(config, DetectionValues{config, out});
-  return out.str();
-}
-
 void addTo(Faults& faults, const Faults& more) { faults.insert(faults.end(), more.begin(), more.end()); }
 
 }  // namespace
 
 Faults applyParameters(const XmlRpcValue& values, Config& config) {
-  if (!values.valid()) return config.faults();
+  if (!values.valid()) return faultsOf(config);
   if (values.getType() != XmlRpcValue::TypeStruct) {
     return {std::string("the parameters are ") + typeName(values) + ", must be a map"};
   }
@@ -180,7 +156,7 @@ Faults applyParameters(const XmlRpcValue& values, Config& config) {
   for (const auto& [name, value] : copy) {
     if (known.count(name) == 0) faults.push_back("unknown parameter '" + name + "'");
   }
-  addTo(faults, config.faults());
+  addTo(faults, faultsOf(config));
   return faults;
 }
 
@@ -203,11 +179,15 @@ dynamic_reconfigure::Config toMessage(const Config& config) {
 Faults applyMessage(const dynamic_reconfigure::Config& message, Config& config) {
   Faults faults;
   visitParameters(config, MessageReader{message, faults});
-  addTo(faults, config.faults());
+  addTo(faults, faultsOf(config));
   return faults;
 }
 
-bool sameDetection(const Config& a, const Config& b) { return detectionValues(a) == detectionValues(b); }
+bool sameDetection(const Config& a, const Config& b) {
+  Config with_switches_of_b = a;
+  with_switches_of_b.node = b.node;
+  return with_switches_of_b == b;
+}
 
 std::string joined(const Faults& faults) { return fmt::format("{}", fmt::join(faults, "; ")); }
 

@@ -13,7 +13,7 @@
 namespace donex {
 
 /// Sets what `values` (a map of names to values) holds. Returns every fault, one sentence each: unknown names,
-/// wrong types, values that are not in the enumeration, and Config::faults() of the outcome.
+/// wrong types, values that are not in the enumeration, and faultsOf the outcome.
 std::vector<std::string> applyParameters(const XmlRpc::XmlRpcValue& values, Config& config);
 
 /// The configuration of a node from its private namespace over the defaults.

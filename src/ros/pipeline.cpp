@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "donex/memory_bound.h"
 #include "donex/motion/deskew.h"
 #include "ros/parameters.h"
 
@@ -232,7 +233,7 @@ void Pipeline::watchCells(bool watched) {
 }
 
 void Pipeline::configure(const Config& config) {
-  const auto faults = config.faults();
+  const auto faults = faultsOf(config);
   if (!faults.empty()) throw std::invalid_argument(joined(faults));
   if (!sameDetection(config_, config)) {
     detector_ = makeDetector(config);

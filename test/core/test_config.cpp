@@ -20,7 +20,7 @@ bool names(const std::vector<std::string>& faults, const std::string& what) {
   return false;
 }
 
-TEST(Config, DefaultsHaveNoFault) { EXPECT_TRUE(Config().faults().empty()); }
+TEST(Config, DefaultsHaveNoFault) { EXPECT_TRUE(faultsOf(Config()).empty()); }
 
 TEST(Config, EveryFaultIsNamedAtOnce) {
   Config config;
@@ -38,7 +38,7 @@ TEST(Config, EveryFaultIsNamedAtOnce) {
 TEST(Config, ARegionWithoutEndIsNotCountedInCells) {
   Config config;
   config.region.y_min = -1e71;
-  const auto faults = config.faults();
+  const auto faults = faultsOf(config);
   ASSERT_EQ(faults.size(), 1U);
   EXPECT_TRUE(names(faults, "y_min"));
 }
@@ -55,7 +55,8 @@ TEST(Config, AGridBeyondTheLimitIsRefusedBeforeItIsAllocated) {
     Config config = paperConfig(method);
     config.voxel_size = 0.02;
     config.region = {-500, 500, -500, 500, -100, 100};
-    EXPECT_TRUE(names(config.faults(), "memory_limit"));
+    EXPECT_TRUE(config.faults().empty()) << "each value is in its range";
+    EXPECT_TRUE(names(faultsOf(config), "memory_limit"));
     EXPECT_THROW(makeDetector(config), std::invalid_argument);
   }
 }
@@ -85,6 +86,41 @@ TEST(Config, ThePapersRuleIsWhatItSaysAndOneStepMoreIsEvidence) {
   EXPECT_FALSE(other.isPaper() || other.hasEvidence()) << "a method of its own";
   other.method = Method::kDonex3dZBuffer;
   EXPECT_TRUE(other.isPaper()) << "whatever the switches say";
+}
+
+/// Gives every parameter another value, one after the other.
+struct ChangeOne {
+  int which, at = 0;
+
+  void operator()(const ParameterInfo&, double& value, double, double) { value += at++ == which ? 0.125 : 0.0; }
+  void operator()(const ParameterInfo&, int& value, int, int) { value += at++ == which ? 1 : 0; }
+  void operator()(const ParameterInfo&, bool& value) { value = (at++ == which) != value; }
+  void operator()(const ParameterInfo&, std::string& value) { value += at++ == which ? "x" : ""; }
+  template <class Enum, class = std::enable_if_t<std::is_enum_v<Enum>>>
+  void operator()(const ParameterInfo&, Enum& value) {
+    const bool is_first = value == static_cast<Enum>(0);
+    if (at++ == which) value = static_cast<Enum>(is_first ? 1 : 0);
+  }
+};
+
+TEST(Config, EqualsAnotherWhereNoParameterDiffers) {
+  const int all = static_cast<int>(parametersOf(Config()).size());
+  EXPECT_TRUE(Config() == Config());
+  for (int i = 0; i < all; ++i) {
+    Config other;
+    visitParameters(other, ChangeOne{i});
+    EXPECT_TRUE(other != Config()) << parametersOf(Config())[static_cast<std::size_t>(i)].info.name;
+  }
+}
+
+TEST(Config, ParametersOfAGroupStandTogether) {
+  std::vector<ParameterGroup> groups;
+  for (const auto& [info, value] : parametersOf(Config())) {
+    if (groups.empty() || groups.back() != info.group) groups.push_back(info.group);
+  }
+  const std::set<ParameterGroup> once(groups.begin(), groups.end());
+  EXPECT_EQ(once.size(), groups.size());
+  EXPECT_EQ(once.size(), 7U);
 }
 
 struct Names {

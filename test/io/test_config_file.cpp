@@ -65,7 +65,7 @@ struct Printer {
   void operator()(const ParameterInfo& info, std::string& value) { line(info, '"' + value + '"'); }
   template <class Enum>
   std::enable_if_t<std::is_enum_v<Enum>> operator()(const ParameterInfo& info, Enum& value) {
-    line(info, namesOf(value).at(static_cast<std::size_t>(value)));
+    line(info, nameOf(value));
   }
 };
 
@@ -83,13 +83,13 @@ TEST(ConfigFile, EveryParameterCanBeGiven) {
   config.node.marker_cells = !config.node.marker_cells;
   config.motion.source = OdometrySource::kTwist;
   config.motion.base_frame = "vehicle";
-  EXPECT_EQ(printed(read(printed(config))), printed(config));
-  EXPECT_NE(printed(config), printed(Config()));
+  EXPECT_TRUE(read(printed(config)) == config);
+  EXPECT_TRUE(config != Config());
 }
 
 TEST(ConfigFile, TheFilesOfThePackageAreSound) {
   const std::filesystem::path directory = DONEX_CONFIG_DIR;
-  EXPECT_EQ(printed(readConfigFile(directory / "default.yaml")), printed(Config()));
+  EXPECT_TRUE(readConfigFile(directory / "default.yaml") == Config());
   EXPECT_EQ(readConfigFile(directory / "paper_2d.yaml").method, Method::kDonex2d);
   EXPECT_EQ(readConfigFile(directory / "paper_3d.yaml").method, Method::kDonex3d);
   EXPECT_EQ(readConfigFile(directory / "at_rest.yaml").motion.source, OdometrySource::kNone);

@@ -52,6 +52,9 @@ TEST_F(Programs, SequenceTakesOptions) {
   expect(0, "donex_2d, 0.4 m", DONEX_SEQUENCE, "--method donex_2d --voxel-size 0.4 seq");
   test::writeText(path("config.yaml"), "voxel_size: 0.5\nmethod: donex_2d\n");
   expect(0, "donex_2d, 0.5 m", DONEX_SEQUENCE, "--config config.yaml seq");
+  test::writeText(path("over.yaml"), "voxel_size: 0.6\n");
+  expect(0, "donex_2d, 0.6 m", DONEX_SEQUENCE, "--config config.yaml --config over.yaml seq");
+  expect(0, "donex_2d, 0.5 m", DONEX_SEQUENCE, "--config over.yaml --config config.yaml seq");
   expect(0, "donex_2d, 0.3 m", DONEX_SEQUENCE, "--config config.yaml --set voxel_size=0.3 --set queue_size=3 seq");
 }
 
@@ -127,12 +130,22 @@ TEST_F(Programs, EvaluateWritesReports) {
 
 TEST_F(Programs, CompareRunsEveryMethodAndReports) {
   const Outcome outcome = expect(0, "out/report.html", DONEX_COMPARE, "seq --out out");
-  for (const char* method : {"donex_3d", "donex_2d", "paper_3d", "paper_3d_zbuffer", "paper_2d", "motion_voxel_grid",
-                             "ray_tracing", "range_residual", "peopleremover"}) {
-    EXPECT_NE(outcome.text.find(method), std::string::npos) << method;
-    EXPECT_TRUE(fs::exists(path(std::string("out/predictions/seq/") + method + "/000007.label"))) << method;
+  std::vector<std::string> names{"donex_3d", "donex_2d", "paper_3d", "paper_3d_zbuffer", "paper_2d"};
+  for (const Method method : allMethods()) {
+    if (infoOf(method).kind == MethodKind::kComparison) names.push_back(nameOf(method));
+  }
+  for (const std::string& name : names) {
+    EXPECT_NE(outcome.text.find(name), std::string::npos) << name;
+    EXPECT_TRUE(fs::exists(path("out/predictions/seq/" + name + "/000007.label"))) << name;
   }
   EXPECT_TRUE(fs::exists(path("out/table_1/donex_2d_0.15/run.json")));
+}
+
+TEST_F(Programs, MethodsAreListed) {
+  for (const Method method : allMethods()) {
+    expect(0, std::string(nameOf(method)) + '\t', DONEX_SEQUENCE, "--list-methods");
+  }
+  expect(0, "peopleremover\twhole drive\t", DONEX_MAP, "--list-methods");
 }
 
 TEST_F(Programs, CompareRefusesWhatItCannotRun) {

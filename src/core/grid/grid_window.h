@@ -4,15 +4,13 @@
 #include <vector>
 
 #include "core/grid/echo_block.h"
+#include "core/grid/farthest_echo.h"
 #include "core/grid/line_of_sight.h"
 #include "donex/config.h"
-#include "donex/detector.h"
+#include "donex/grid_outline.h"
 #include "donex/scan.h"
 
 namespace donex {
-
-/// Echoes beyond this distance from the sensor [m] are invalid, like non-finite ones.
-constexpr float kFarthestEcho = 1000.0F;
 
 /// `i` of a window that wraps around after `n`; `i` is below 2 n.
 inline int wrapped(int i, int n) { return i >= n ? i - n : i; }

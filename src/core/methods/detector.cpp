@@ -2,13 +2,13 @@
 
 #include <stdexcept>
 
-#include "core/methods/detectors.h"
-#include "core/methods/people_remover.h"
+#include "core/methods/method_list.h"
+#include "donex/memory_bound.h"
 
 namespace donex {
 
 void requireSound(const Config& config) {
-  const std::vector<std::string> faults = config.faults();
+  const std::vector<std::string> faults = faultsOf(config);
   if (faults.empty()) return;
   std::string text = "configuration refused:";
   for (const std::string& fault : faults) text += "\n  " + fault;
@@ -17,27 +17,22 @@ void requireSound(const Config& config) {
 
 std::unique_ptr<Detector> makeDetector(const Config& config) {
   requireSound(config);
-  switch (config.method) {
-    case Method::kDonex2d: return config.isPaper() ? makePaperDetector2d(config) : makeEvidenceDetector2d(config);
-    case Method::kDonex3dZBuffer: return makeZBufferDetector(config);
-    case Method::kMotionVoxelGrid: return makeMotionVoxelGridDetector(config);
-    case Method::kRayTracing: return makeRayTracingDetector(config);
-    case Method::kRangeResidual: return makeRangeResidualDetector(config);
-    case Method::kPeopleremover:
-      throw std::invalid_argument(
-          "method peopleremover judges a drive when all of it has been seen, it cannot run live: give the recording to "
-          "donex_bag, or a sequence to donex_sequence or donex_map");
-    case Method::kDonex3d: break;
+  const MethodEntry& entry = entryOf(config.method);
+  if (entry.info.needs_whole_drive) {
+    throw std::invalid_argument(std::string("method ") + entry.info.name +
+                                " judges a drive when all of it has been seen, it cannot run live: give the recording "
+                                "to donex_bag, or a sequence to donex_sequence or donex_map");
   }
-  return config.isPaper() ? makePaperDetector3d(config) : makeEvidenceDetector3d(config);
+  return entry.make_live(config);
 }
 
 std::unique_ptr<WholeDriveDetector> makeWholeDriveDetector(const Config& config) {
   requireSound(config);
-  if (!needsWholeDrive(config.method)) {
-    throw std::invalid_argument("method " + nameOf(config.method) + " runs live");
+  const MethodEntry& entry = entryOf(config.method);
+  if (!entry.info.needs_whole_drive) {
+    throw std::invalid_argument(std::string("method ") + entry.info.name + " runs live");
   }
-  return makePeopleRemover(config, PeopleRemoverOptions());
+  return entry.make_whole_drive(config);
 }
 
 }  // namespace donex

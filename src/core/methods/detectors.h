@@ -1,4 +1,4 @@
-// What makeDetector chooses from.
+// The factories of the live methods, and what their memory comes to: rows of method_list.cpp.
 #pragma once
 
 #include <memory>
@@ -17,6 +17,8 @@ double evidenceBytes(const Config& config, double echoes);
 std::unique_ptr<Detector> makePaperDetector3d(const Config& config);
 std::unique_ptr<Detector> makeZBufferDetector(const Config& config);
 std::unique_ptr<Detector> makePaperDetector2d(const Config& config);
+double paperBytes3d(const Config& config, double echoes);
+double paperBytes2d(const Config& config, double echoes);
 
 // The live methods of the comparison (algorithm: "Comparison methods"), each in a file of its own.
 std::unique_ptr<Detector> makeRangeResidualDetector(const Config& config);

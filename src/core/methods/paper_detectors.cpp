@@ -2,6 +2,7 @@
 
 #include "core/grid/grid_2d.h"
 #include "core/grid/grid_3d.h"
+#include "core/grid/voxel_memory.h"
 #include "core/methods/detectors.h"
 #include "core/methods/stream_guard.h"
 #include "core/sight/ray_index.h"
@@ -21,6 +22,8 @@ std::vector<Index3> hitVoxels(const GridWindow& window, const Scan& scan) {
   std::sort(voxels.begin(), voxels.end(), isBefore);
   return voxels;
 }
+
+constexpr double kKeptLabels = 2.0;  // bytes per echo of the labels that are kept
 
 std::vector<Index3> rememberedBy(const Grid2d&) { return {}; }
 template <class SeeThrough>
@@ -124,6 +127,16 @@ std::unique_ptr<Detector> makeZBufferDetector(const Config& config) {
 }
 std::unique_ptr<Detector> makePaperDetector2d(const Config& config) {
   return std::make_unique<PaperDetector<Grid2d>>(config);
+}
+
+double paperBytes3d(const Config& config, double echoes) {
+  const double bricks = (GridWindow::extentOf(config) / GridWindow::kBrick).prod();
+  return VoxelMemory::bytesFor(bricks, echoes, config.threads) + RayIndex::bytesFor(echoes, config.threads) +
+         kKeptLabels * echoes;
+}
+double paperBytes2d(const Config& config, double echoes) {
+  const double cells = GridWindow::extentOf(config).head<2>().prod();
+  return Grid2d::bytesFor(cells, echoes, config.threads) + kKeptLabels * echoes;
 }
 
 }  // namespace donex

@@ -26,30 +26,32 @@ class PeopleRemover : public ComparisonDetector<WholeDriveDetector> {
 
   bool nextPass() override {
     if (isLastPass()) return false;
-    if (pass_ == Pass::kSee) voxels_.dropSmallClusters(static_cast<std::size_t>(std::max(options_.min_cluster, 1)));
-    if (pass_ == Pass::kSee && options_.subvoxel) voxels_.markHalfFreed();
-    pass_ = pass_ == Pass::kHit ? Pass::kSee : Pass::kLabel;
+    if (pass_ == Pass::kFreeVoxels) {
+      voxels_.dropSmallClusters(static_cast<std::size_t>(std::max(options_.min_cluster, 1)));
+      if (options_.subvoxel) voxels_.markHalfFreed();
+    }
+    pass_ = pass_ == Pass::kCountHits ? Pass::kFreeVoxels : Pass::kLabelEchoes;
     scan_ = 0;
     guard().reset();
     return true;
   }
 
   int passes() const override { return 3; }
-  bool isLastPass() const override { return pass_ == Pass::kLabel; }
+  bool isLastPass() const override { return pass_ == Pass::kLabelEchoes; }
 
  protected:
   void judge(const Scan& scan, const GridScan& in_grid, EchoLabels& labels) override {
-    choose(scan, in_grid);
+    selectEchoes(scan, in_grid);
     switch (pass_) {
-      case Pass::kHit: hit(in_grid); break;
-      case Pass::kSee: see(scan, in_grid); break;
-      case Pass::kLabel: label(in_grid, labels); break;
+      case Pass::kCountHits: countHits(in_grid); break;
+      case Pass::kFreeVoxels: freeVoxels(scan, in_grid); break;
+      case Pass::kLabelEchoes: labelEchoes(in_grid, labels); break;
     }
     ++scan_;
   }
 
   void forget() override {
-    if (pass_ == Pass::kHit && scan_ == 0) return;
+    if (pass_ == Pass::kCountHits && scan_ == 0) return;
     throw std::logic_error("peopleremover judges whole drives: one that begins anew must be given as two drives");
   }
 
@@ -58,22 +60,22 @@ class PeopleRemover : public ComparisonDetector<WholeDriveDetector> {
   }
 
  private:
-  enum class Pass { kHit, kSee, kLabel };
+  enum class Pass { kCountHits, kFreeVoxels, kLabelEchoes };
 
   Index3 voxelAt(const Eigen::Vector3f& in_window) const { return voxelOf(in_window) + window().minIndex(); }
 
-  void choose(const Scan& scan, const GridScan& in_grid) {
-    sees_.assign(scan.echoes.size(), 0);
-    hits_.assign(scan.echoes.size(), 0);
-    for (std::size_t i = 0; i < sees_.size(); ++i) {
-      sees_[i] = in_grid.echoes[i].allFinite() && scan.echoes[i].norm() > diagonal_ ? 1 : 0;
-      hits_[i] = sees_[i] != 0 && in_grid.inside[i] != 0 ? 1 : 0;
+  void selectEchoes(const Scan& scan, const GridScan& in_grid) {
+    has_sight_.assign(scan.echoes.size(), 0);
+    has_hit_.assign(scan.echoes.size(), 0);
+    for (std::size_t i = 0; i < has_sight_.size(); ++i) {
+      has_sight_[i] = in_grid.echoes[i].allFinite() && scan.echoes[i].norm() > diagonal_ ? 1 : 0;
+      has_hit_[i] = has_sight_[i] != 0 && in_grid.inside[i] != 0 ? 1 : 0;
     }
   }
 
-  void hit(const GridScan& in_grid) {
-    for (std::size_t i = 0; i < hits_.size(); ++i) {
-      if (hits_[i] != 0) voxels_.add(voxelAt(in_grid.echoes[i]), scan_);
+  void countHits(const GridScan& in_grid) {
+    for (std::size_t i = 0; i < has_hit_.size(); ++i) {
+      if (has_hit_[i] != 0) voxels_.add(voxelAt(in_grid.echoes[i]), scan_);
     }
   }
 
@@ -89,14 +91,14 @@ class PeopleRemover : public ComparisonDetector<WholeDriveDetector> {
     });
   }
 
-  void see(const Scan& scan, const GridScan& in_grid) {
+  void freeVoxels(const Scan& scan, const GridScan& in_grid) {
     placeVoxels();
-    const auto* farthest = options_.point_shadows ? &shadows_.cast(scan.echoes, sees_) : nullptr;
-    for (std::size_t i = 0; i < sees_.size(); ++i) {
-      if (sees_[i] == 0) continue;
+    const auto* farthest = options_.point_shadows ? &shadows_.cast(scan.echoes, has_sight_) : nullptr;
+    for (std::size_t i = 0; i < has_sight_.size(); ++i) {
+      if (has_sight_[i] == 0) continue;
       const float share = farthest == nullptr ? 1.0F : (*farthest)[i] / scan.echoes[i].norm();
       const Eigen::Vector3f sight = in_grid.echoes[i] - in_grid.origin;
-      if (share > 0.0F) follow(in_grid.origin, in_grid.origin + std::min(share, 1.0F) * sight);
+      if (share > 0.0F) traverse(in_grid.origin, in_grid.origin + std::min(share, 1.0F) * sight);
     }
     keepFreed();
   }
@@ -111,7 +113,7 @@ class PeopleRemover : public ComparisonDetector<WholeDriveDetector> {
   }
 
   /// Frees the voxels on the line; false where it ends in one.
-  bool pass(const Index3& voxel) {
+  bool freeVoxel(const Index3& voxel) {
     if (!window().contains(voxel)) return false;
     const BrickBit at = layout_.locate(voxel);
     if (own_.test(at)) return false;
@@ -119,17 +121,17 @@ class PeopleRemover : public ComparisonDetector<WholeDriveDetector> {
     return true;
   }
 
-  void follow(const Eigen::Vector3f& origin, const Eigen::Vector3f& end) {
+  void traverse(const Eigen::Vector3f& origin, const Eigen::Vector3f& end) {
     const LineOfSight line(origin, end);
     for (const Index3& voxel : line) {
-      if (!pass(voxel)) return;
+      if (!freeVoxel(voxel)) return;
     }
-    pass(line.echoVoxel());
+    freeVoxel(line.echoVoxel());
   }
 
-  void label(const GridScan& in_grid, EchoLabels& labels) const {
-    for (std::size_t i = 0; i < hits_.size(); ++i) {
-      if (hits_[i] == 0) continue;
+  void labelEchoes(const GridScan& in_grid, EchoLabels& labels) const {
+    for (std::size_t i = 0; i < has_hit_.size(); ++i) {
+      if (has_hit_[i] == 0) continue;
       labels.observed[i] = 1;
       const DriveVoxel* voxel = voxels_.find(voxelAt(in_grid.echoes[i]));
       if (voxel == nullptr) throw std::logic_error("peopleremover: this pass shows other scans than the first");
@@ -141,13 +143,14 @@ class PeopleRemover : public ComparisonDetector<WholeDriveDetector> {
 
   PeopleRemoverOptions options_;
   float diagonal_;  ///< of a voxel [m]
-  Pass pass_ = Pass::kHit;
+  Pass pass_ = Pass::kCountHits;
   std::uint32_t scan_ = 0;
   DriveVoxels voxels_;  ///< in the odometry frame
   PointShadows shadows_;
   BrickLayout layout_;
   BrickMask foreign_, own_, freed_;  ///< in the window
-  std::vector<std::uint8_t> sees_, hits_;
+  // Per echo of the scan: its line of sight counts; it hits its voxel.
+  std::vector<std::uint8_t> has_sight_, has_hit_;
 };
 
 }  // namespace
@@ -155,6 +158,11 @@ class PeopleRemover : public ComparisonDetector<WholeDriveDetector> {
 std::unique_ptr<WholeDriveDetector> makePeopleRemover(const Config& config, const PeopleRemoverOptions& options) {
   requireSound(config);
   return std::make_unique<PeopleRemover>(config, options);
+}
+
+double peopleRemoverBytes(const Config& config, double) {
+  constexpr double kMasks = 3.0 * sizeof(std::uint64_t);  // bytes per brick: foreign, own, freed
+  return kMasks * (GridWindow::extentOf(config.scrolling()) / GridWindow::kBrick).prod();
 }
 
 }  // namespace donex

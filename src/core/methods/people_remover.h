@@ -26,4 +26,7 @@ struct PeopleRemoverOptions {
 /// `voxel_size` and region are the configuration's. Throws std::invalid_argument for a faulty one.
 std::unique_ptr<WholeDriveDetector> makePeopleRemover(const Config& config, const PeopleRemoverOptions& options);
 
+/// What its window takes [bytes], see memoryBound; the voxels of the drive come on top.
+double peopleRemoverBytes(const Config& config, double echoes);
+
 }  // namespace donex

@@ -49,35 +49,38 @@ class RayTracingDetector : public ComparisonDetector<Detector> {
  protected:
   void judge(const Scan& scan, const GridScan& in_grid, EchoLabels& labels) override {
     const Eigen::Isometry3d odom_from_sensor = scan.odomFromSensor();
-    for (Kept& kept : kept_) kept.kept_from_sensor = (kept.sensor_from_odom * odom_from_sensor).cast<float>();
+    for (EarlierScan& earlier : earlier_) {
+      earlier.earlier_from_sensor = (earlier.sensor_from_odom * odom_from_sensor).cast<float>();
+    }
     for (std::size_t i = 0; i < scan.echoes.size(); ++i) {
       if (in_grid.inside[i] == 0) continue;
-      const MotionBelief belief = ask(scan.echoes[i]);
+      const MotionBelief belief = beliefOfEcho(scan.echoes[i]);
       labels.observed[i] = 1.0 - belief.unknown() > kKnown ? 1 : 0;
       labels.dynamic[i] = belief.dynamic > kKnown ? 1 : 0;
     }
     keep(scan);
   }
 
-  void forget() override { kept_.clear(); }
+  void forget() override { earlier_.clear(); }
   std::size_t methodBytes() const override {
     std::size_t bytes = 0;
-    for (const Kept& kept : kept_) bytes += sizeof(Kept) + kept.mesh.memoryBytes();
+    for (const EarlierScan& earlier : earlier_) bytes += sizeof(EarlierScan) + earlier.mesh.memoryBytes();
     return bytes;
   }
 
  private:
-  struct Kept {
+  struct EarlierScan {
     Eigen::Isometry3d sensor_from_odom;
-    Eigen::Isometry3f kept_from_sensor;
+    Eigen::Isometry3f earlier_from_sensor;
     ScanMesh mesh;
   };
 
-  MotionBelief ask(const Eigen::Vector3f& echo) const {
+  /// What the earlier scans say, the newest first.
+  MotionBelief beliefOfEcho(const Eigen::Vector3f& echo) const {
     MotionBelief belief;
-    for (const Kept& kept : kept_) {
-      const Eigen::Vector3f point = kept.kept_from_sensor * echo;
-      const auto surface = kept.mesh.at(point);
+    for (const EarlierScan& earlier : earlier_) {
+      const Eigen::Vector3f point = earlier.earlier_from_sensor * echo;
+      const auto surface = earlier.mesh.at(point);
       if (surface) belief = belief.combinedWith(beliefOf(*surface, point.norm()));
       if (1.0 - belief.unknown() > kKnown) break;
     }
@@ -85,18 +88,18 @@ class RayTracingDetector : public ComparisonDetector<Detector> {
   }
 
   void keep(const Scan& scan) {
-    if (kept_.size() == kAskedScans) {
-      kept_.push_front(std::move(kept_.back()));  // its mesh's storage is used again
-      kept_.pop_back();
+    if (earlier_.size() == kAskedScans) {
+      earlier_.push_front(std::move(earlier_.back()));  // its mesh's storage is used again
+      earlier_.pop_back();
     } else {
-      kept_.push_front({{}, {}, ScanMesh(largest_gap_)});
+      earlier_.push_front({{}, {}, ScanMesh(largest_gap_)});
     }
-    kept_.front().sensor_from_odom = scan.odomFromSensor().inverse();
-    kept_.front().mesh.build(scan.echoes);
+    earlier_.front().sensor_from_odom = scan.odomFromSensor().inverse();
+    earlier_.front().mesh.build(scan.echoes);
   }
 
-  double largest_gap_;     // [rad]
-  std::deque<Kept> kept_;  ///< newest first
+  double largest_gap_;               // [rad]
+  std::deque<EarlierScan> earlier_;  ///< newest first
 };
 
 }  // namespace

@@ -1,11 +1,13 @@
 // The methods of the comparison on scenes whose labels can be told by hand, and what holds for all of them.
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include <gtest/gtest.h>
 
 #include "core/methods/region_planes.h"
-#include "donex/detector.h"
+#include "donex/memory_bound.h"
+#include "donex/whole_drive.h"
 #include "support/random_scans.h"
 
 namespace donex {
@@ -117,10 +119,39 @@ TEST_P(LiveMethods, HoldTheInterface) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Comparison, LiveMethods,
-                         ::testing::Values(Method::kDonex3dZBuffer, Method::kMotionVoxelGrid, Method::kRayTracing,
-                                           Method::kRangeResidual),
+std::vector<Method> liveMethods() {
+  std::vector<Method> methods;
+  for (const Method method : allMethods()) {
+    const MethodInfo& info = infoOf(method);
+    if (info.kind != MethodKind::kDonex && !info.needs_whole_drive) methods.push_back(method);
+  }
+  return methods;
+}
+
+INSTANTIATE_TEST_SUITE_P(Comparison, LiveMethods, ::testing::ValuesIn(liveMethods()),
                          [](const auto& method) { return nameOf(method.param); });
+
+TEST(MethodList, EveryMethodIsBuiltByItsName) {
+  std::set<std::string> names;
+  for (const Method method : allMethods()) {
+    const MethodInfo& info = infoOf(method);
+    EXPECT_EQ(info.method, method);
+    EXPECT_EQ(info.name, nameOf(method));
+    EXPECT_TRUE(names.insert(info.name).second) << info.name << " stands twice";
+    EXPECT_FALSE(std::string(info.what).empty() || std::string(info.source).empty()) << info.name;
+    const Config config = configOf(method);
+    EXPECT_GE(memoryBound(config, kUsualScan), 0.0);
+    if (info.needs_whole_drive) {
+      EXPECT_NE(makeWholeDriveDetector(config), nullptr);
+      EXPECT_THROW(makeDetector(config), std::invalid_argument) << info.name;
+    } else {
+      EXPECT_NE(makeDetector(config), nullptr);
+      EXPECT_THROW(makeWholeDriveDetector(config), std::invalid_argument) << info.name;
+    }
+  }
+  EXPECT_GE(names.size(), 7U);
+  EXPECT_THROW(infoOf(static_cast<Method>(names.size())), std::out_of_range);
+}
 
 Scan single(double stamp, const Eigen::Vector3f& echo) {
   Scan scan;
