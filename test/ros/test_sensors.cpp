@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "donex/parameters.h"
 #include "io/config_file.h"
 #include "ros/driver_clouds.h"
 #include "ros/pipeline_rig.h"
@@ -97,6 +98,20 @@ TEST(Sensors, EveryFileIsTriedWithItsDriver) {
   for (const auto& entry : std::filesystem::directory_iterator(kSensors)) files.insert(entry.path().stem());
   for (const auto& [sensor, driver] : kDriverOf) tried.insert(sensor);
   EXPECT_EQ(files, tried);
+}
+
+/// How the clouds are read, how far the sensor reaches, and the gap between its beams: nothing else that shapes labels.
+TEST(Sensors, FilesSayOnlyWhatASensorIs) {
+  const std::vector<Parameter> defaults = parametersOf(Config());
+  for (const auto& entry : std::filesystem::directory_iterator(kSensors)) {
+    const std::vector<Parameter> values = parametersOf(readConfigFile(entry.path()));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const auto& [info, value] = values[i];
+      const bool is_of_sensor = info.group == ParameterGroup::kClouds || info.group == ParameterGroup::kRegion ||
+                                std::string(info.name) == "sight_gap";
+      EXPECT_TRUE(is_of_sensor || value == defaults[i].value) << entry.path() << ": " << info.name;
+    }
+  }
 }
 
 TEST(Sensors, ScansAreStraightened) {
