@@ -21,11 +21,11 @@ class Followed {
   explicit Followed(const ObjectConfig& config = {}) : segmenter_(60.0, config), tracker(config) {}
 
   /// Number of the scan's echoes that move.
-  std::size_t step(const JudgedScene& things) {
-    history_.add(things.scan(), things.judged.is_echo);
-    tracker.predict(things.judged.stamp, predictions_);
-    segmenter_.segment(things.judged, predictions_, segments);
-    tracker.update(things.judged, segments, predictions_, history_.newestSeenFrom(things.judged.odom_from_points),
+  std::size_t step(const JudgedScene& scene) {
+    history_.add(scene.scan(), scene.judged.is_echo);
+    tracker.predict(scene.judged.stamp, predictions_);
+    segmenter_.segment(scene.judged, predictions_, segments);
+    tracker.update(scene.judged, segments, predictions_, history_.newestSeenFrom(scene.judged.odom_from_points),
                    verdicts);
     std::size_t moving = 0;
     for (std::size_t i = 0; i < segments.size(); ++i) moving += verdicts[i].moves() ? segments[i].echoes.size() : 0U;
@@ -44,25 +44,25 @@ class Followed {
 };
 
 /// The rear and a side of a vehicle whose rear is at x.
-void addVehicle(JudgedScene& things, double x, double y, Place place) {
-  things.face({x, y, 0.3}, {0.0, 1.8, 0.0}, 1.2, place, 0.05);
-  things.face({x, y, 0.3}, {4.0, 0.0, 0.0}, 1.2, place, 0.05);
+void addVehicle(JudgedScene& scene, double x, double y, Place place) {
+  scene.face({x, y, 0.3}, {0.0, 1.8, 0.0}, 1.2, place, 0.05);
+  scene.face({x, y, 0.3}, {4.0, 0.0, 0.0}, 1.2, place, 0.05);
 }
 
 TEST(ObjectTracker, SomethingNewIsFollowedUnderOneNumber) {
   Followed followed;
   std::uint32_t id = 0;
   for (int k = 0; k < 20; ++k) {
-    JudgedScene things(0.1 * k);
-    addVehicle(things, 5.0 + 0.8 * k, 2.0, Place::kNew);
-    EXPECT_EQ(followed.step(things), things.judged.points.size());
+    JudgedScene scene(0.1 * k);
+    addVehicle(scene, 5.0 + 0.8 * k, 2.0, Place::kNew);
+    EXPECT_EQ(followed.step(scene), scene.judged.points.size());
     ASSERT_EQ(followed.tracker.objects().size(), 1U);
     const Object& object = followed.tracker.objects()[0];
     id = k == 0 ? object.id : id;
     EXPECT_EQ(object.id, id) << "scan " << k;
     EXPECT_TRUE(object.dynamic);
     EXPECT_NEAR(object.age, 0.1 * k, 1e-9);
-    EXPECT_EQ(object.echoes, things.judged.points.size());
+    EXPECT_EQ(object.echoes, scene.judged.points.size());
     EXPECT_NEAR(object.odom_from_box.translation().x(), 7.0 + 0.8 * k, 0.4);
     if (k == 0) continue;  // the direction is not known yet
     EXPECT_NEAR(object.size.x(), 4.0, 0.1);
@@ -75,10 +75,10 @@ TEST(ObjectTracker, TwoThatPassEachOtherKeepTheirNumbers) {
   Followed followed;
   std::array<std::uint32_t, 2> ids{};
   for (int k = 0; k < 20; ++k) {
-    JudgedScene things(0.1 * k);
-    addVehicle(things, 4.0 + 1.0 * k, 2.0, Place::kNew);
-    addVehicle(things, 24.0 - 1.0 * k, 6.0, Place::kNew);
-    followed.step(things);
+    JudgedScene scene(0.1 * k);
+    addVehicle(scene, 4.0 + 1.0 * k, 2.0, Place::kNew);
+    addVehicle(scene, 24.0 - 1.0 * k, 6.0, Place::kNew);
+    followed.step(scene);
     ASSERT_EQ(followed.tracker.objects().size(), 2U) << "scan " << k;
     for (std::size_t i = 0; i < 2; ++i) {
       if (k == 0) ids[i] = followed.tracker.objects()[i].id;
@@ -92,11 +92,11 @@ TEST(ObjectTracker, AVehicleAheadAtTheSameSpeedIsFoundByItsRear) {
   Followed followed;
   for (int k = 0; k < 30; ++k) {
     const double sensor_x = 1.2 * k;
-    JudgedScene things(0.1 * k, sensor_x);
+    JudgedScene scene(0.1 * k, sensor_x);
     // Only ever in its own shadow: nothing of it is new.
-    things.face({sensor_x + 12.0, -0.9, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kUnobserved, 0.05);
-    const std::size_t moving = followed.step(things);
-    const bool found_when_it_must = k < 6 || moving == things.judged.points.size();
+    scene.face({sensor_x + 12.0, -0.9, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kUnobserved, 0.05);
+    const std::size_t moving = followed.step(scene);
+    const bool found_when_it_must = k < 6 || moving == scene.judged.points.size();
     const bool not_before_it_can = k > 3 || moving == 0;
     EXPECT_TRUE(found_when_it_must && not_before_it_can) << "scan " << k << ": " << moving;
   }
@@ -110,9 +110,9 @@ TEST(ObjectTracker, WithoutMotionOnlyNewEchoesTell) {
   for (const Place place : {Place::kUnobserved, Place::kNew}) {
     Followed followed(config);
     for (int k = 0; k < 30; ++k) {
-      JudgedScene things(0.1 * k, 1.2 * k);
-      things.face({1.2 * k + 12.0, -0.9, 0.3}, {0.0, 1.8, 0.0}, 1.2, place, 0.05);
-      EXPECT_EQ(followed.step(things), place == Place::kNew ? things.judged.points.size() : 0U) << "scan " << k;
+      JudgedScene scene(0.1 * k, 1.2 * k);
+      scene.face({1.2 * k + 12.0, -0.9, 0.3}, {0.0, 1.8, 0.0}, 1.2, place, 0.05);
+      EXPECT_EQ(followed.step(scene), place == Place::kNew ? scene.judged.points.size() : 0U) << "scan " << k;
     }
   }
 }
@@ -122,12 +122,12 @@ TEST(ObjectTracker, AFewNewEchoesAndAPlaceThatIsLeftAreEnough) {
   Followed followed;
   std::size_t moving = 0;
   for (int k = 0; k < 20; ++k) {
-    JudgedScene things(0.1 * k);
+    JudgedScene scene(0.1 * k);
     const double x = -10.0 + 0.8 * k;
-    things.face({x, 6.0, 0.3}, {12.0, 0.0, 0.0}, 1.2, Place::kUnobserved);
-    things.face({-30.0, 20.0, 0.3}, {60.0, 0.0, 0.0}, 6.0, Place::kUnobserved, 0.15);  // a house behind
-    for (int i = 0; i < 6; ++i) things.echo({x + 12.1, 6.0, 0.3 + 0.1 * i}, Place::kNew);
-    moving = followed.step(things);
+    scene.face({x, 6.0, 0.3}, {12.0, 0.0, 0.0}, 1.2, Place::kUnobserved);
+    scene.face({-30.0, 20.0, 0.3}, {60.0, 0.0, 0.0}, 6.0, Place::kUnobserved, 0.15);  // a house behind
+    for (int i = 0; i < 6; ++i) scene.echo({x + 12.1, 6.0, 0.3 + 0.1 * i}, Place::kNew);
+    moving = followed.step(scene);
   }
   EXPECT_EQ(moving, 121U * 13U + 6U);
 }
@@ -136,11 +136,11 @@ TEST(ObjectTracker, WhatStandsNeverMovesHoweverTheSensorPassesIt) {
   for (const Place place : {Place::kUnobserved, Place::kSettled}) {
     Followed followed;
     for (int k = 0; k < 40; ++k) {
-      JudgedScene things(0.1 * k, 1.0 * k);
-      addVehicle(things, 20.0, 3.0, place);
-      things.face({30.0, -6.0, 0.3}, {0.0, 2.0, 0.0}, 1.5, place);
-      things.face({-20.0, 12.0, 0.0}, {100.0, 0.0, 0.0}, 6.0, place, 0.2);
-      EXPECT_EQ(followed.step(things), 0U) << "scan " << k;
+      JudgedScene scene(0.1 * k, 1.0 * k);
+      addVehicle(scene, 20.0, 3.0, place);
+      scene.face({30.0, -6.0, 0.3}, {0.0, 2.0, 0.0}, 1.5, place);
+      scene.face({-20.0, 12.0, 0.0}, {100.0, 0.0, 0.0}, 6.0, place, 0.2);
+      EXPECT_EQ(followed.step(scene), 0U) << "scan " << k;
       EXPECT_TRUE(followed.tracker.objects().empty());
     }
   }
@@ -152,10 +152,10 @@ TEST(ObjectTracker, WhatStopsStaysDynamicForTheStopTime) {
     config.stop_time = stop_time;
     Followed followed(config);
     for (int k = 0; k < 25; ++k) {
-      JudgedScene things(0.1 * k);
-      addVehicle(things, 8.0, 2.0, k < 10 ? Place::kNew : Place::kUnobserved);
+      JudgedScene scene(0.1 * k);
+      addVehicle(scene, 8.0, 2.0, k < 10 ? Place::kNew : Place::kUnobserved);
       const bool expected = 0.1 * (k - 9) <= stop_time;
-      EXPECT_EQ(followed.step(things) > 0, expected) << "scan " << k << " stop_time " << stop_time;
+      EXPECT_EQ(followed.step(scene) > 0, expected) << "scan " << k << " stop_time " << stop_time;
       ASSERT_EQ(followed.tracker.objects().size(), 1U) << "it has moved since it is followed";
       EXPECT_EQ(followed.tracker.objects()[0].dynamic, expected);
     }
@@ -165,12 +165,12 @@ TEST(ObjectTracker, WhatStopsStaysDynamicForTheStopTime) {
 TEST(ObjectTracker, AParkedCarThatDrivesOffIsFoundBeforeItIsFast) {
   Followed followed;
   for (int k = 0; k < 45; ++k) {
-    JudgedScene things(0.1 * k);
+    JudgedScene scene(0.1 * k);
     const double driving = std::max(0.0, 0.1 * (k - 20)), way = 0.5 * 1.75 * driving * driving;
-    addVehicle(things, 8.0 + way, 2.0, way < 0.2 ? Place::kSettled : Place::kUnobserved);
-    const std::size_t car = things.judged.points.size();
-    things.face({-10.0, 12.0, 0.0}, {60.0, 0.0, 0.0}, 6.0, Place::kSettled, 0.2);
-    const std::size_t moving = followed.step(things);
+    addVehicle(scene, 8.0 + way, 2.0, way < 0.2 ? Place::kSettled : Place::kUnobserved);
+    const std::size_t car = scene.judged.points.size();
+    scene.face({-10.0, 12.0, 0.0}, {60.0, 0.0, 0.0}, 6.0, Place::kSettled, 0.2);
+    const std::size_t moving = followed.step(scene);
     EXPECT_TRUE(moving == 0 || moving == car) << "scan " << k << ": " << moving;
     EXPECT_EQ(moving, driving > 1.5 ? car : driving < 0.3 ? 0U : moving) << "driving for " << driving << " s";
   }
@@ -179,9 +179,9 @@ TEST(ObjectTracker, AParkedCarThatDrivesOffIsFoundBeforeItIsFast) {
 TEST(ObjectTracker, WhatSettlesStandsAtOnce) {
   Followed followed;
   for (int k = 0; k < 14; ++k) {
-    JudgedScene things(0.1 * k);
-    addVehicle(things, 8.0, 2.0, k < 10 ? Place::kNew : Place::kSettled);
-    EXPECT_EQ(followed.step(things) > 0, k < 10) << "scan " << k;
+    JudgedScene scene(0.1 * k);
+    addVehicle(scene, 8.0, 2.0, k < 10 ? Place::kNew : Place::kSettled);
+    EXPECT_EQ(followed.step(scene) > 0, k < 10) << "scan " << k;
   }
 }
 
@@ -190,15 +190,15 @@ TEST(ObjectTracker, WhatASlowThingLeavesBehindAFenceTells) {
   Followed followed;
   std::size_t moving = 0, person = 0;
   for (int k = 0; k < 20; ++k) {
-    JudgedScene things(0.1 * k);
+    JudgedScene scene(0.1 * k);
     const double y = -3.0 + 0.12 * k;
-    things.face({9.0, y, 0.4}, {0.0, 0.5, 0.0}, 1.4, Place::kUnobserved, 0.05);
-    person = things.judged.points.size();
+    scene.face({9.0, y, 0.4}, {0.0, 0.5, 0.0}, 1.4, Place::kUnobserved, 0.05);
+    person = scene.judged.points.size();
     for (int picket = 0; picket < 40; ++picket) {
-      things.face({6.0, -4.0 + 0.2 * picket, 0.0}, {0.0, 0.02, 0.0}, 1.1, Place::kSettled, 0.02);
+      scene.face({6.0, -4.0 + 0.2 * picket, 0.0}, {0.0, 0.02, 0.0}, 1.1, Place::kSettled, 0.02);
     }
-    things.face({25.0, -15.0, 0.0}, {0.0, 30.0, 0.0}, 5.0, Place::kSettled);
-    moving = followed.step(things);
+    scene.face({25.0, -15.0, 0.0}, {0.0, 30.0, 0.0}, 5.0, Place::kSettled);
+    moving = followed.step(scene);
   }
   EXPECT_EQ(moving, person);
 }
@@ -206,16 +206,16 @@ TEST(ObjectTracker, WhatASlowThingLeavesBehindAFenceTells) {
 TEST(ObjectTracker, FragmentsOfAVehicleBehindAPoleMoveWithIt) {
   Followed followed;
   for (int k = 0; k < 15; ++k) {
-    JudgedScene things(0.1 * k);
+    JudgedScene scene(0.1 * k);
     const double x = 12.0 + 0.6 * k;
-    things.face({x, -0.9, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kUnobserved, 0.05);
+    scene.face({x, -0.9, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kUnobserved, 0.05);
     const bool is_hidden_in_part = k == 14;
-    things.face({x, -0.9, 0.3}, {is_hidden_in_part ? 2.0 : 4.0, 0.0, 0.0}, 1.2, Place::kUnobserved, 0.05);
+    scene.face({x, -0.9, 0.3}, {is_hidden_in_part ? 2.0 : 4.0, 0.0, 0.0}, 1.2, Place::kUnobserved, 0.05);
     // Seven echoes beyond a gap that connects nothing.
-    if (is_hidden_in_part) things.face({x + 3.7, -0.9, 0.3}, {0.0, 0.05, 0.0}, 0.3, Place::kUnobserved, 0.05);
-    const std::size_t moving = followed.step(things);
+    if (is_hidden_in_part) scene.face({x + 3.7, -0.9, 0.3}, {0.0, 0.05, 0.0}, 0.3, Place::kUnobserved, 0.05);
+    const std::size_t moving = followed.step(scene);
     const bool is_known = k > 8;
-    EXPECT_TRUE(!is_known || moving == things.judged.points.size()) << "scan " << k << ": " << moving;
+    EXPECT_TRUE(!is_known || moving == scene.judged.points.size()) << "scan " << k << ": " << moving;
   }
   EXPECT_EQ(followed.segments.size(), 2U);
 }
@@ -223,18 +223,18 @@ TEST(ObjectTracker, FragmentsOfAVehicleBehindAPoleMoveWithIt) {
 TEST(ObjectTracker, AThinThingNeverMoves) {
   Followed followed;
   for (int k = 0; k < 10; ++k) {
-    JudgedScene things(0.1 * k);
-    things.face({8.0 + 0.5 * k, 2.0, 2.2}, {0.0, 1.5, 0.0}, 0.05, Place::kNew, 0.05);
-    EXPECT_EQ(followed.step(things), 0U);
+    JudgedScene scene(0.1 * k);
+    scene.face({8.0 + 0.5 * k, 2.0, 2.2}, {0.0, 1.5, 0.0}, 0.05, Place::kNew, 0.05);
+    EXPECT_EQ(followed.step(scene), 0U);
   }
 }
 
 TEST(ObjectTracker, WhatIsLongerThanAnyVehicleIsNotFollowed) {
   for (const double length : {24.0, 26.0}) {
     Followed followed;
-    JudgedScene things(0.0);
-    things.face({-12.0, 6.0, 0.3}, {length, 0.0, 0.0}, 1.2, Place::kNew, 0.1);
-    EXPECT_EQ(followed.step(things) > 0, length < 25.0);
+    JudgedScene scene(0.0);
+    scene.face({-12.0, 6.0, 0.3}, {length, 0.0, 0.0}, 1.2, Place::kNew, 0.1);
+    EXPECT_EQ(followed.step(scene) > 0, length < 25.0);
     EXPECT_EQ(followed.tracker.objects().size(), length < 25.0 ? 1U : 0U);
   }
 }
@@ -242,9 +242,9 @@ TEST(ObjectTracker, WhatIsLongerThanAnyVehicleIsNotFollowed) {
 TEST(ObjectTracker, NumbersEndWithTheThingAndAreNotUsedAgain) {
   Followed followed;
   const auto seeAt = [&](double stamp) {
-    JudgedScene things(stamp);
-    addVehicle(things, 8.0, 2.0, Place::kNew);
-    followed.step(things);
+    JudgedScene scene(stamp);
+    addVehicle(scene, 8.0, 2.0, Place::kNew);
+    followed.step(scene);
     return followed.tracker.objects().at(0).id;
   };
   const std::uint32_t first = seeAt(0.0);
@@ -263,9 +263,9 @@ TEST(ObjectTracker, MemoryIsBounded) {
   Followed followed;
   std::size_t after_a_while = 0;
   for (int k = 0; k < 400; ++k) {
-    JudgedScene things(0.1 * k);
-    things.face({5.0 + 3.0 * (k % 9), 2.0, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kNew);
-    followed.step(things);
+    JudgedScene scene(0.1 * k);
+    scene.face({5.0 + 3.0 * (k % 9), 2.0, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kNew);
+    followed.step(scene);
     if (k == 100) after_a_while = followed.tracker.memoryBytes();
   }
   EXPECT_GT(after_a_while, 0U);

@@ -14,20 +14,20 @@ using testing::JudgedScene;
 
 constexpr double kReach = 40.0;
 
-Segments found(const JudgedScene& things, const Predictions& predictions = {}) {
+Segments found(const JudgedScene& scene, const Predictions& predictions = {}) {
   Segmenter segmenter(kReach, ObjectConfig{});
   Segments segments;
-  segmenter.segment(things.judged, predictions, segments);
+  segmenter.segment(scene.judged, predictions, segments);
   return segments;
 }
 
 TEST(Segmenter, TellsOfEachThingWhatItsEchoesSay) {
-  JudgedScene things(0.0);
-  things.face({6.0, 1.0, 0.5}, {0.0, 1.0, 0.0}, 1.0, Place::kNew);          // 11 x 11
-  things.face({6.0, -4.0, 0.5}, {0.0, 0.5, 0.0}, 1.0, Place::kSettled);     // 6 x 11
-  things.face({-6.0, 0.0, 0.5}, {0.0, 0.2, 0.0}, 0.2, Place::kUnobserved);  // 3 x 3
-  things.judged.odom_from_points.translation() << 100.0, 0.0, 0.0;
-  const Segments segments = found(things);
+  JudgedScene scene(0.0);
+  scene.face({6.0, 1.0, 0.5}, {0.0, 1.0, 0.0}, 1.0, Place::kNew);          // 11 x 11
+  scene.face({6.0, -4.0, 0.5}, {0.0, 0.5, 0.0}, 1.0, Place::kSettled);     // 6 x 11
+  scene.face({-6.0, 0.0, 0.5}, {0.0, 0.2, 0.0}, 0.2, Place::kUnobserved);  // 3 x 3
+  scene.judged.odom_from_points.translation() << 100.0, 0.0, 0.0;
+  const Segments segments = found(scene);
   ASSERT_EQ(segments.size(), 3U);
   EXPECT_EQ(segments[0].echoes.size(), 121U);
   EXPECT_EQ(segments[0].new_echoes, 121);
@@ -42,9 +42,9 @@ TEST(Segmenter, TellsOfEachThingWhatItsEchoesSay) {
 
 TEST(Segmenter, TooFewEchoesAreNoThing) {
   for (const int echoes : {4, 5}) {
-    JudgedScene things(0.0);
-    for (int i = 0; i < echoes; ++i) things.echo({6.0, 0.1 * i, 1.0}, Place::kNew);
-    EXPECT_EQ(found(things).size(), echoes < ObjectConfig{}.min_echoes ? 0U : 1U);
+    JudgedScene scene(0.0);
+    for (int i = 0; i < echoes; ++i) scene.echo({6.0, 0.1 * i, 1.0}, Place::kNew);
+    EXPECT_EQ(found(scene).size(), echoes < ObjectConfig{}.min_echoes ? 0U : 1U);
   }
 }
 
@@ -72,12 +72,12 @@ TEST(Segmenter, IsNewWhereEnoughIsNew) {
 }
 
 TEST(Segmenter, APedestrianAtAWallIsOnlyHimself) {
-  JudgedScene things(0.0);
-  things.face({10.0, -8.0, 0.3}, {0.0, 16.0, 0.0}, 2.0, Place::kSettled);
-  const std::size_t wall = things.judged.points.size();
-  things.face({9.8, 1.0, 0.3}, {0.0, 0.4, 0.0}, 1.5, Place::kNew);
-  const std::size_t pedestrian = things.judged.points.size() - wall;
-  const Segments segments = found(things);
+  JudgedScene scene(0.0);
+  scene.face({10.0, -8.0, 0.3}, {0.0, 16.0, 0.0}, 2.0, Place::kSettled);
+  const std::size_t wall = scene.judged.points.size();
+  scene.face({9.8, 1.0, 0.3}, {0.0, 0.4, 0.0}, 1.5, Place::kNew);
+  const std::size_t pedestrian = scene.judged.points.size() - wall;
+  const Segments segments = found(scene);
   ASSERT_EQ(segments.size(), 1U);
   EXPECT_EQ(segments[0].echoes.size(), pedestrian);
   EXPECT_EQ(segments[0].echoes.front(), wall);
@@ -85,13 +85,13 @@ TEST(Segmenter, APedestrianAtAWallIsOnlyHimself) {
 }
 
 TEST(Segmenter, TwoPedestriansAtAWallAreTwoWithWhatIsUnobservedOfThem) {
-  JudgedScene things(0.0);
-  things.face({10.0, -8.0, 0.3}, {0.0, 16.0, 0.0}, 2.0, Place::kSettled);
+  JudgedScene scene(0.0);
+  scene.face({10.0, -8.0, 0.3}, {0.0, 16.0, 0.0}, 2.0, Place::kSettled);
   for (const double y : {-4.0, 3.0}) {
-    things.face({9.8, y, 0.3}, {0.0, 0.4, 0.0}, 1.0, Place::kNew);
-    things.face({9.8, y, 1.4}, {0.0, 0.4, 0.0}, 0.3, Place::kUnobserved);
+    scene.face({9.8, y, 0.3}, {0.0, 0.4, 0.0}, 1.0, Place::kNew);
+    scene.face({9.8, y, 1.4}, {0.0, 0.4, 0.0}, 0.3, Place::kUnobserved);
   }
-  const Segments segments = found(things);
+  const Segments segments = found(scene);
   ASSERT_EQ(segments.size(), 2U);
   for (const Segment& segment : segments) {
     EXPECT_EQ(segment.echoes.size(), 55U + 20U);
@@ -103,18 +103,18 @@ TEST(Segmenter, TwoPedestriansAtAWallAreTwoWithWhatIsUnobservedOfThem) {
 class Trimming : public ::testing::Test {
  protected:
   void build(double mover_height, Place neighbour, double neighbour_height) {
-    things_.face({5.11, 0.1, 0.3}, {0.0, 1.0, 0.0}, mover_height, Place::kNew);
-    mover_ = things_.judged.points.size();
-    things_.face({5.51, 0.1, 0.3}, {0.0, 1.0, 0.0}, neighbour_height, neighbour);
-    segments_ = found(things_);
+    scene_.face({5.11, 0.1, 0.3}, {0.0, 1.0, 0.0}, mover_height, Place::kNew);
+    mover_ = scene_.judged.points.size();
+    scene_.face({5.51, 0.1, 0.3}, {0.0, 1.0, 0.0}, neighbour_height, neighbour);
+    segments_ = found(scene_);
     ASSERT_EQ(segments_.size(), 1U);
-    ASSERT_EQ(segments_[0].echoes.size(), things_.judged.points.size());
+    ASSERT_EQ(segments_[0].echoes.size(), scene_.judged.points.size());
   }
 
   /// Numbers of the echoes that move.
   std::vector<std::size_t> moving(Proof proof = Proof::kEnteredFree) {
     std::vector<Proof> proofs;
-    trimmer_.trim(things_.judged, segments_, {{proof, false}}, proofs);
+    trimmer_.trim(scene_.judged, segments_, {{proof, false}}, proofs);
     std::vector<std::size_t> echoes;
     for (std::size_t i = 0; i < proofs.size(); ++i) {
       if (proofs[i] == Proof::kNone) continue;
@@ -124,7 +124,7 @@ class Trimming : public ::testing::Test {
     return echoes;
   }
 
-  JudgedScene things_{0.0};
+  JudgedScene scene_{0.0};
   std::size_t mover_ = 0;
   Trimmer trimmer_{kReach, ObjectConfig{}};
   Segments segments_;
@@ -139,7 +139,7 @@ TEST_F(Trimming, ASettledNeighbourGoes) {
 
 TEST_F(Trimming, AnUnobservedPartThatIsSmallerStays) {
   build(1.2, Place::kUnobserved, 0.8);
-  EXPECT_EQ(moving().size(), things_.judged.points.size());
+  EXPECT_EQ(moving().size(), scene_.judged.points.size());
 }
 
 TEST_F(Trimming, AnUnobservedNeighbourThatIsLargerGoes) {
@@ -154,11 +154,11 @@ TEST_F(Trimming, WhatDoesNotMoveHasNoProof) {
 
 /// A car's rear and side at x 5 to 9, y 2 to 3.8, that touches the front of a house seen for the first time.
 JudgedScene carAtAHouse() {
-  JudgedScene things(0.0);
-  things.face({5.0, 2.0, 0.3}, {4.0, 0.0, 0.0}, 1.2, Place::kUnobserved);
-  things.face({5.0, 2.0, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kUnobserved);
-  things.face({2.0, 4.1, 0.3}, {14.0, 0.0, 0.0}, 3.0, Place::kUnobserved);
-  return things;
+  JudgedScene scene(0.0);
+  scene.face({5.0, 2.0, 0.3}, {4.0, 0.0, 0.0}, 1.2, Place::kUnobserved);
+  scene.face({5.0, 2.0, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kUnobserved);
+  scene.face({2.0, 4.1, 0.3}, {14.0, 0.0, 0.0}, 3.0, Place::kUnobserved);
+  return scene;
 }
 
 Prediction expectedCar(bool moves_whole = true, double x = 7.0) {
@@ -166,46 +166,46 @@ Prediction expectedCar(bool moves_whole = true, double x = 7.0) {
 }
 
 TEST(Segmenter, WhatIsExpectedIsCutOutOfWhatItRanInto) {
-  const JudgedScene things = carAtAHouse();
-  EXPECT_EQ(found(things).size(), 1U);
-  const Segments segments = found(things, {expectedCar()});
+  const JudgedScene scene = carAtAHouse();
+  EXPECT_EQ(found(scene).size(), 1U);
+  const Segments segments = found(scene, {expectedCar()});
   ASSERT_EQ(segments.size(), 2U);
   EXPECT_FALSE(segments[0].cut_out);
   EXPECT_TRUE(segments[1].cut_out);
   EXPECT_EQ(segments[1].echoes.size(), (41U + 19U) * 13U);
   EXPECT_NEAR(segments[1].extent().x(), 4.0, 1e-4);
-  EXPECT_EQ(segments[0].echoes.size() + segments[1].echoes.size(), things.judged.points.size());
+  EXPECT_EQ(segments[0].echoes.size() + segments[1].echoes.size(), scene.judged.points.size());
 }
 
 TEST(Segmenter, NothingIsCutOutWithoutAReason) {
-  const JudgedScene things = carAtAHouse();
-  EXPECT_EQ(found(things, {expectedCar(false)}).size(), 1U) << "it was never seen to move as one";
-  EXPECT_EQ(found(things, {expectedCar(true, 40.0)}).size(), 1U) << "it is expected elsewhere";
-  EXPECT_EQ(found(things, {{{9.0, 4.0, 1.5}, {14.0, 2.4, 3.0}, {14.0, 2.4, 3.0}, true}}).size(), 1U)
+  const JudgedScene scene = carAtAHouse();
+  EXPECT_EQ(found(scene, {expectedCar(false)}).size(), 1U) << "it was never seen to move as one";
+  EXPECT_EQ(found(scene, {expectedCar(true, 40.0)}).size(), 1U) << "it is expected elsewhere";
+  EXPECT_EQ(found(scene, {{{9.0, 4.0, 1.5}, {14.0, 2.4, 3.0}, {14.0, 2.4, 3.0}, true}}).size(), 1U)
       << "the whole looks like it";
-  EXPECT_EQ(found(things, {{{5.0, 2.0, 0.9}, {0.6, 0.6, 1.2}, {0.6, 0.6, 1.2}, true}}).size(), 1U)
+  EXPECT_EQ(found(scene, {{{5.0, 2.0, 0.9}, {0.6, 0.6, 1.2}, {0.6, 0.6, 1.2}, true}}).size(), 1U)
       << "too short to settle under itself";
 }
 
 TEST(Segmenter, ALongThingThatIsExpectedStaysWholeWhereItsSideSettles) {
-  JudgedScene things(0.0);
-  things.face({5.0, 2.0, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kUnobserved);
-  things.face({5.0, 2.0, 0.3}, {1.2, 0.0, 0.0}, 1.2, Place::kSettled);
-  things.face({6.3, 2.0, 0.3}, {2.7, 0.0, 0.0}, 1.2, Place::kUnobserved);
-  for (int i = 0; i < 6; ++i) things.echo({9.0, 2.0, 0.3 + 0.1 * i}, Place::kNew);
-  const Segments apart = found(things);
+  JudgedScene scene(0.0);
+  scene.face({5.0, 2.0, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kUnobserved);
+  scene.face({5.0, 2.0, 0.3}, {1.2, 0.0, 0.0}, 1.2, Place::kSettled);
+  scene.face({6.3, 2.0, 0.3}, {2.7, 0.0, 0.0}, 1.2, Place::kUnobserved);
+  for (int i = 0; i < 6; ++i) scene.echo({9.0, 2.0, 0.3 + 0.1 * i}, Place::kNew);
+  const Segments apart = found(scene);
   EXPECT_EQ(std::count_if(apart.begin(), apart.end(), [](const Segment& c) { return c.settled_echoes > 0; }), 0);
-  const Segments whole = found(things, {expectedCar(false)});
+  const Segments whole = found(scene, {expectedCar(false)});
   ASSERT_EQ(whole.size(), 1U);
-  EXPECT_EQ(whole[0].echoes.size(), things.judged.points.size());
+  EXPECT_EQ(whole[0].echoes.size(), scene.judged.points.size());
 }
 
 TEST(Segmenter, AThingThatHidesAmongWhatIsSettledIsTakenFromIt) {
-  JudgedScene things(0.0);
-  things.face({6.0, 1.0, 0.3}, {0.0, 0.5, 0.0}, 1.5, Place::kUnobserved);
-  things.face({6.0, 1.6, 0.3}, {0.0, 6.0, 0.0}, 1.5, Place::kSettled);
-  EXPECT_EQ(found(things)[0].settled_echoes, 61 * 16) << "nothing is new, nothing is expected";
-  const Segments segments = found(things, {{{6.0, 1.2, 1.0}, {0.1, 0.5, 1.5}, {0.1, 0.5, 1.5}, false}});
+  JudgedScene scene(0.0);
+  scene.face({6.0, 1.0, 0.3}, {0.0, 0.5, 0.0}, 1.5, Place::kUnobserved);
+  scene.face({6.0, 1.6, 0.3}, {0.0, 6.0, 0.0}, 1.5, Place::kSettled);
+  EXPECT_EQ(found(scene)[0].settled_echoes, 61 * 16) << "nothing is new, nothing is expected";
+  const Segments segments = found(scene, {{{6.0, 1.2, 1.0}, {0.1, 0.5, 1.5}, {0.1, 0.5, 1.5}, false}});
   ASSERT_EQ(segments.size(), 1U);
   EXPECT_EQ(segments[0].echoes.size(), 6U * 16U);
 }

@@ -13,10 +13,10 @@ namespace {
 constexpr double kLookBack = 1.0, kLongestGap = 0.6;  // [s]
 
 /// An object of one echo, at x.
-Segment thing(const testing::JudgedScene& things, std::size_t echo) {
+Segment segmentOf(const testing::JudgedScene& scene, std::size_t echo) {
   Segment segment;
   segment.echoes = {static_cast<std::uint32_t>(echo)};
-  describeEchoes(things.judged, segment);
+  describeEchoes(scene.judged, segment);
   return segment;
 }
 
@@ -46,8 +46,8 @@ TEST(TraceHistory, FindsWhatListsFind) {
   for (int k = 0; k < 400; ++k) {
     stamp += k % 100 < 50 ? 0.1 : 0.02 + 0.7 * uniform(random);
     history.begin(stamp);
-    testing::JudgedScene things(stamp);
-    for (int id = 0; id < 12; ++id) things.echo({uniform(random) * 50.0, 1.0 * id, 1.0}, Place::kNew);
+    testing::JudgedScene scene(stamp);
+    for (int id = 0; id < 12; ++id) scene.echo({uniform(random) * 50.0, 1.0 * id, 1.0}, Place::kNew);
     for (int id = 0; id < 12; ++id) {
       Followed& it = followed[id];
       for (const double ago : {0.3, 0.6, kLookBack}) {
@@ -62,8 +62,8 @@ TEST(TraceHistory, FindsWhatListsFind) {
         EXPECT_NEAR(trace.begin()->x(), expected->second, 1e-4);
       }
       if (uniform(random) < 0.3) continue;  // hidden
-      const Segment segment = thing(things, static_cast<std::size_t>(id));
-      it.last = history.leave(things.judged, segment, it.last);
+      const Segment segment = segmentOf(scene, static_cast<std::size_t>(id));
+      it.last = history.leave(scene.judged, segment, it.last);
       it.left.emplace_back(stamp, segment.center().x());
       it.last_seen = stamp;
     }
@@ -76,15 +76,15 @@ TEST(TraceHistory, FindsWhatListsFind) {
 
 TEST(TraceHistory, KeepsNoMoreThanItIsAskedFor) {
   TraceHistory history(kLookBack, kLongestGap);
-  testing::JudgedScene things(0.0);
-  things.face({8.0, 0.0, 0.4}, {0.0, 2.0, 0.0}, 2.0, Place::kNew, 0.1);
+  testing::JudgedScene scene(0.0);
+  scene.face({8.0, 0.0, 0.4}, {0.0, 2.0, 0.0}, 2.0, Place::kNew, 0.1);
   Segment segment;
   for (std::uint32_t i = 0; i < 400; ++i) segment.echoes.push_back(i);
   TraceHistory::Id last;
   std::size_t after_warm_up = 0;
   for (int k = 0; k < 1000; ++k) {
     history.begin(0.1 * k);
-    last = history.leave(things.judged, segment, last);
+    last = history.leave(scene.judged, segment, last);
     if (k == 100) after_warm_up = history.memoryBytes();
   }
   EXPECT_EQ(history.memoryBytes(), after_warm_up);
