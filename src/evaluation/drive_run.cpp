@@ -1,8 +1,23 @@
 #include "evaluation/drive_run.h"
 
+#include <algorithm>
+
 #include "core/timing.h"
 
 namespace donex {
+namespace {
+
+constexpr double kUsualDuration = 0.1;    // [s] of a scan without another one
+constexpr double kLongestDuration = 0.2;  // [s] sensors that turn slower are not known: scans are missing
+
+/// A scan lasts until the next one; the last one as long as the one before.
+double durationOf(const SequenceReader& sequence, std::size_t index) {
+  if (sequence.size() < 2) return kUsualDuration;
+  const std::size_t first = std::min(index, sequence.size() - 2);
+  return std::min(sequence.stamp(first + 1) - sequence.stamp(first), kLongestDuration);
+}
+
+}  // namespace
 
 DriveRun::DriveRun(const Config& config, DriveOdometry odometry) {
   if (odometry == DriveOdometry::kLidar) odometry_.emplace();
@@ -13,10 +28,22 @@ DriveRun::DriveRun(const Config& config, DriveOdometry odometry) {
   }
 }
 
-void DriveRun::judge(const Scan& scan, std::size_t index) {
+void DriveRun::judge(const Scan& scan, std::size_t index, double duration) {
+  const bool is_cut = parts_.count() > 1;
+  if (is_cut) {
+    parts_.cut(scan, duration);
+    labels_.resize(scan.echoes.size());
+  }
   const double wall = wallTime();
   const double cpu = cpuTime();
-  detector().process(scan, labels_);
+  if (is_cut) {
+    for (std::size_t k = 0; k < parts_.count(); ++k) {
+      detector().process(parts_[k], labels_of_part_);
+      parts_.putBack(k, labels_of_part_, labels_);
+    }
+  } else {
+    detector().process(scan, labels_);
+  }
   cpu_times_[index] += cpuTime() - cpu;
   times_[index] += wallTime() - wall;
 }
@@ -50,7 +77,7 @@ void DriveRun::run(const SequenceReader& sequence, std::size_t scans, const Sink
     for (std::size_t i = 0; i < scans; ++i) {
       Scan scan = toScan(sequence.scan(i));
       if (odometry_) locate(scan, i);
-      judge(scan, i);
+      judge(scan, i, durationOf(sequence, i));
       if (odometry_) learn(i);
       if (counts) sink(i, scan, labels_);
       progress();

@@ -8,6 +8,7 @@
 
 #include "core/motion/lidar_odometry.h"
 #include "donex/whole_drive.h"
+#include "evaluation/scan_parts.h"
 #include "io/sequence.h"
 
 namespace donex {
@@ -22,6 +23,9 @@ class DriveRun {
  public:
   /// Throws std::invalid_argument with every fault of the configuration.
   explicit DriveRun(const Config& config, DriveOdometry odometry = DriveOdometry::kGiven);
+
+  /// Shows the method each scan in so many parts (ScanParts); labels and times are those of whole scans again.
+  void cutScansInto(std::size_t parts) { parts_ = ScanParts(parts); }
 
   /// Takes the labels of a scan; `index` is the sequence's.
   using Sink = std::function<void(std::size_t index, const Scan& scan, const EchoLabels& labels)>;
@@ -45,13 +49,15 @@ class DriveRun {
  private:
   Detector& detector() { return whole_ == nullptr ? *live_ : *whole_; }
   const Detector& detector() const { return whole_ == nullptr ? *live_ : *whole_; }
-  void judge(const Scan& scan, std::size_t index);
+  /// `duration`: time that the scan took [s].
+  void judge(const Scan& scan, std::size_t index, double duration);
   void locate(Scan& scan, std::size_t index);
   void learn(std::size_t index);
 
   std::unique_ptr<Detector> live_;
   std::unique_ptr<WholeDriveDetector> whole_;
-  EchoLabels labels_;
+  EchoLabels labels_, labels_of_part_;
+  ScanParts parts_{1};
   std::optional<LidarOdometry> odometry_;
   std::vector<TrackedScan> tracked_;
   std::vector<double> odometry_times_;

@@ -23,6 +23,7 @@ struct Arguments {
   std::string sequence;
   std::string out;
   std::size_t frames = 0;  ///< 0: all
+  std::size_t parts = 1;   ///< per scan
   std::string odometry = "given";
   bool overwrite = false;
 };
@@ -106,6 +107,7 @@ void run(const CLI::App& app, const Arguments& arguments, const ConfigOptions& o
   prepareOutput(arguments);
   const std::size_t scans = scansOf(sequence, arguments.frames);
   DriveRun drive(config, arguments.odometry == "lidar" ? DriveOdometry::kLidar : DriveOdometry::kGiven);
+  drive.cutScansInto(arguments.parts);
   const Run run = runSequence(sequence, scans, drive, arguments.out);
   report(run, config, drive, sequence.hasLabels());
   reportOdometry(sequence, drive);
@@ -125,6 +127,10 @@ int main(int argc, char** argv) {
                  "given: the poses of poses.txt; lidar: found from the scans, and compared with those; by default " +
                      arguments.odometry)
       ->check(CLI::IsMember({"given", "lidar"}));
+  app.add_option("--parts", arguments.parts,
+                 "cut each scan into N sectors that are judged one after the other, at times of their own; labels, "
+                 "times and figures are those of whole scans")
+      ->check(CLI::Range(std::size_t{1}, donex::ScanParts::kMost));
   donex::addOverwrite(app, arguments.overwrite);
   const donex::ConfigOptions options(app);
   return donex::runProgram(app, argc, argv, [&] { donex::run(app, arguments, options); });

@@ -49,6 +49,8 @@ TEST_F(Programs, SequenceWritesLabelsAndFigures) {
 TEST_F(Programs, SequenceTakesOptions) {
   expect(0, "3 scans, 30 echoes", DONEX_SEQUENCE, "--frames 3 --out pred seq");
   EXPECT_FALSE(fs::exists(path("pred/000003.label")));
+  expect(0, "8 scans, 80 echoes", DONEX_SEQUENCE, "--parts 4 --out cut seq");
+  EXPECT_EQ(readLabels(path("cut/000007.label")).size(), 10U);
   expect(0, "donex_2d, 0.4 m", DONEX_SEQUENCE, "--method donex_2d --voxel-size 0.4 seq");
   test::writeText(path("config.yaml"), "voxel_size: 0.5\nmethod: donex_2d\n");
   expect(0, "donex_2d, 0.5 m", DONEX_SEQUENCE, "--config config.yaml seq");
@@ -69,6 +71,7 @@ TEST_F(Programs, SequenceRefusesWrongArguments) {
   expect(2, "SEQ_DIR is required", DONEX_SEQUENCE, "");
   expect(2, "", DONEX_SEQUENCE, "seq --nonsense");
   expect(2, "", DONEX_SEQUENCE, "seq --frames 0");
+  expect(2, "--parts", DONEX_SEQUENCE, "seq --parts 0");
   expect(2, "'method=donex': method is donex, must be one of", DONEX_SEQUENCE, "seq --method donex");
   expect(2, "'voxel_size=9': voxel_size is 9", DONEX_SEQUENCE, "seq --voxel-size 9");
   expect(2, "there is no parameter nonsense", DONEX_SEQUENCE, "seq --set nonsense=1");

@@ -43,12 +43,13 @@ class EvidenceDetector : public Detector {
 
   void process(const Scan& scan, EchoLabels& labels) override {
     guard_.admit(scan);
-    clock_.begin(scan.stamp);
     places_.shift(scan.odom_from_base);        // voxel shift (paper, "Ego motion")
     places_.window().enter(scan, in_voxels_);  // every frame once: in voxels,
     enterPoints(scan.stamp);                   // in metres, and what lies between them and the odometry
+    const bool begins_turn = sights_.arrive(scan, judged_.is_echo);
+    if (begins_turn) clock_.begin(scan.stamp);
     heightsAboveGround();
-    const SightView before = sights_.seenFrom(judged_.odom_from_points);
+    const SightView before = sights_.seenBefore(judged_.odom_from_points);
     judgePlaces(before);
     sights_.add(scan, judged_.is_echo);
     const ScanSight now = sights_.newestSeenFrom(judged_.odom_from_points);

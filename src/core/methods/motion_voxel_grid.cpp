@@ -47,6 +47,7 @@ class MotionVoxelGridDetector : public ComparisonDetector<Detector> {
       labels.dynamic[i] = verdict->second ? 1 : 0;
     }
     for (const auto& verdict : verdicts) count(verdict.first);
+    sights_.arrive(scan, is_echo_);
     sights_.add(scan, is_echo_);
     forgetOld();
   }

@@ -1,40 +1,59 @@
-// The last few scans' sights: was this place seen free lately?
+// The sights of the last turns: was this place seen free lately?
 #pragma once
 
 #include <array>
 #include <vector>
 
 #include "core/sight/sight_image.h"
+#include "core/sight/turns.h"
 #include "donex/scan.h"
 
 namespace donex {
 
 class SightHistory;
 
-/// What one scan saw, asked in points of the frame it was made for [m].
+/// What one image holds, asked in points of the frame it was made for [m].
+struct ImageSight {
+  const SightImage* image = nullptr;
+  Eigen::Isometry3f sensor_from_points = Eigen::Isometry3f::Identity();
+  float margin = 0.0F;  ///< [m]
+
+  SightImage::Sight at(const Eigen::Vector3f& point) const { return image->at(sensor_from_points * point, margin); }
+};
+
+/// What was seen last in each direction, asked in points of the frame it was made for [m].
 class ScanSight {
  public:
-  ScanSight() = default;
-  ScanSight(const SightImage& image, const Eigen::Isometry3f& sensor_from_points, float margin)
-      : image_(&image), sensor_from_points_(sensor_from_points), margin_(margin) {}
-
-  /// What the scan saw at `point`, within `margin` [m]; unknown where there is no scan.
+  /// What was seen at `point`, within `margin` [m]; unknown where nobody looked.
   SightImage::Sight at(const Eigen::Vector3f& point, float margin) const {
-    return image_ == nullptr ? SightImage::Sight::kUnknown : image_->at(sensor_from_points_ * point, margin);
+    return ask(point, [&](const SightImage& image, const Eigen::Vector3f& seen) { return image.at(seen, margin); });
   }
   SightImage::Sight at(const Eigen::Vector3f& point) const { return at(point, margin_); }
-  /// The same of its single lines of sight: between the wires of a fence they see through.
+  /// The same of single lines of sight: between the wires of a fence they see through.
   SightImage::Sight throughGaps(const Eigen::Vector3f& point, float margin) const {
-    return image_ == nullptr ? SightImage::Sight::kUnknown : image_->throughGaps(sensor_from_points_ * point, margin);
+    return ask(point,
+               [&](const SightImage& image, const Eigen::Vector3f& seen) { return image.throughGaps(seen, margin); });
   }
 
  private:
-  const SightImage* image_ = nullptr;
-  Eigen::Isometry3f sensor_from_points_ = Eigen::Isometry3f::Identity();
+  friend class SightHistory;
+
+  /// Of the first image that looks there.
+  template <class Question>
+  SightImage::Sight ask(const Eigen::Vector3f& point, Question&& question) const {
+    for (std::size_t i = 0; i < count_; ++i) {
+      const Eigen::Vector3f seen = images_[i].sensor_from_points * point;
+      if (i + 1 == count_ || images_[i].image->looksAt(seen)) return question(*images_[i].image, seen);
+    }
+    return SightImage::Sight::kUnknown;
+  }
+
+  std::array<ImageSight, 2 * Turns::kMostSensors> images_;  ///< newest first
+  std::size_t count_ = 0;
   float margin_ = 0.0F;  ///< [m]
 };
 
-/// What the remembered scans saw, asked in points of the frame it was made for [m]. Valid until the history changes.
+/// What the remembered turns saw, asked in points of the frame it was made for [m]. Valid until the history changes.
 class SightView {
  public:
   struct Evidence {
@@ -57,7 +76,7 @@ class SightView {
   static constexpr std::size_t kMostScans = 128;
   struct Kept {
     double stamp;
-    ScanSight sight;
+    ImageSight sight;
   };
 
   std::array<Kept, kMostScans> kept_;  ///< newest first
@@ -65,19 +84,24 @@ class SightView {
 };
 
 /// Free evidence (algorithm: "Free evidence"): "never hit before" is not "was free before".
-/// It is asked only of voxels that are newly hit, so a scan is kept as its sight image, nothing more.
+/// It is asked only of voxels that are newly hit, so what a sensor saw in a turn is kept as an image, nothing more.
+/// Parts of a turn enter one image: they count as one look.
 class SightHistory {
  public:
-  /// Keeps scans of the last `length` [s], at most one every `spacing` [s], and never more than SightView holds.
+  /// Keeps turns of the last `length` [s], at most one every `spacing` [s], and never more than SightView holds.
   SightHistory(double length, double spacing, float margin, const SightImage::Reading& reading)
       : length_(length), spacing_(spacing), margin_(margin), reading_(reading) {}
 
-  /// Takes what a scan saw. Stamps grow. Views made before are no longer valid.
+  /// A cloud arrives; add() follows. True where it begins a turn. Stamps never run backwards.
+  bool arrive(const Scan& scan, const std::vector<std::uint8_t>& is_echo);
+  /// Takes what the cloud saw that arrived last. Views made before are no longer valid.
   void add(const Scan& scan, const std::vector<std::uint8_t>& is_echo);
 
-  /// What all kept scans saw; to be asked in points whose frame lies in the odometry's like this.
+  /// What the turns before the present one saw; to be asked in points whose frame lies in the odometry's like this.
+  SightView seenBefore(const Eigen::Isometry3d& odom_from_points) const;
+  /// The same, with the present turn as far as it has come.
   SightView seenFrom(const Eigen::Isometry3d& odom_from_points) const;
-  /// The same of the newest kept scan alone.
+  /// What was seen last in each direction, by the newest cloud's sensor where that looked.
   ScanSight newestSeenFrom(const Eigen::Isometry3d& odom_from_points) const;
 
   bool empty() const { return kept_.empty(); }
@@ -88,19 +112,33 @@ class SightHistory {
 
  private:
   struct Kept {
-    double stamp;
-    Eigen::Isometry3d sensor_from_odom;
+    double stamp;  ///< when its turn began [s]
+    std::uint32_t turn;
+    Eigen::Isometry3d base_from_sensor, sensor_from_odom;
     SightImage image;
   };
 
   void forget(double until);
-  ScanSight sightOf(const Kept& kept, const Eigen::Isometry3d& odom_from_points) const {
-    return {kept.image, (kept.sensor_from_odom * odom_from_points).cast<float>(), margin_};
+  void keepNoMoreThanAViewHolds();
+  Kept& imageFor(const Scan& scan);
+  SightImage newImage();
+  SightView view(std::size_t newest, const Eigen::Isometry3d& odom_from_points) const;
+  /// Images of turns before the present one.
+  std::size_t countBefore() const;
+  ImageSight sightOf(const Kept& kept, const Eigen::Isometry3d& odom_from_points) const {
+    return {&kept.image, (kept.sensor_from_odom * odom_from_points).cast<float>(), margin_};
   }
 
   double length_, spacing_;
   float margin_;
   SightImage::Reading reading_;
+  Turns turns_;
+  SightPixels pixels_;  ///< of the newest cloud
+  SightImage::Workspace workspace_;
+  Eigen::Isometry3d newest_mounting_ = Eigen::Isometry3d::Identity();
+  std::uint32_t turn_ = 0;   ///< of those that are kept
+  double turn_began_ = 0.0;  ///< [s]
+  bool keeps_turn_ = false;
   std::vector<Kept> kept_;          ///< oldest first
   std::vector<SightImage> spares_;  ///< storage for the next images
 };

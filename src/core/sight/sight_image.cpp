@@ -1,157 +1,185 @@
 #include "core/sight/sight_image.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-
-#include "core/grid/simd.h"
-#include "core/pi.h"
 
 namespace donex {
 namespace {
 
-constexpr int kColumns = 1024;        // a power of two: azimuth wraps by masking
-constexpr float kRowHeight = 0.006F;  // tangent of the elevation
-constexpr float kSteepest = 1.2F;     // tangent beyond which nothing is asked
-constexpr float kRangeStep = 0.02F;   // [m]
-constexpr float kNearest = 0.3F;      // [m] nothing is asked nearer to the sensor's axis
-constexpr float kFarthest = 1e6F;     // [m] nor farther away: infinity has no azimuth
+constexpr int kColumns = SightPixels::kColumns;
+constexpr float kRangeStep = SightPixels::kRangeStep;
 /// Of an image that covers everything.
-constexpr auto kPixels =
-    static_cast<std::size_t>(kColumns) * static_cast<std::size_t>(2.0F * kSteepest / kRowHeight + 1.0F);
+constexpr auto kPixels = static_cast<std::size_t>(kColumns) * static_cast<std::size_t>(SightPixels::kRows);
+constexpr int kMoreRows = 8;   // when parts of a turn reach beyond those before, they may do so again
+constexpr int kAsCovered = 2;  // columns beside one that is covered: a sensor may step wider than ours
 
-/// atan2 to 1e-4 rad, the same on every machine; monotone within an octant, which is all a column needs.
-inline float azimuthOf(float y, float x) {
-  const float ax = std::abs(x), ay = std::abs(y);
-  const float a = std::min(ax, ay) / std::max(ax, ay);
-  const float s = a * a;
-  float angle = ((-0.0464964749F * s + 0.15931422F) * s - 0.327622764F) * s * a + a;
-  angle = ay > ax ? 0.5F * kPiF - angle : angle;
-  angle = x < 0.0F ? kPiF - angle : angle;
-  return y < 0.0F ? -angle : angle;
-}
-
-struct Projected {
-  bool valid;
-  int column, row;
-  float range;
-};
-
-/// Column and row are 0 where the point is not valid: nothing is asked so near to the sensor's axis, so far from it, or
-/// so steeply.
-inline Projected project(float x, float y, float z) {
-  const float horizontal = std::sqrt(x * x + y * y);
-  const float slope = z / horizontal;
-  const bool valid = static_cast<int>(horizontal > kNearest) & static_cast<int>(horizontal < kFarthest) &
-                     static_cast<int>(std::abs(slope) < kSteepest);
-  const float turn = (azimuthOf(y, x) + kPiF) * (kColumns / (2.0F * kPiF));
-  const float row = (slope + kSteepest) / kRowHeight;
-  return {valid, static_cast<int>(valid ? turn : 0.0F) & (kColumns - 1), static_cast<int>(valid ? row : 0.0F),
-          std::sqrt(horizontal * horizontal + z * z)};
-}
-
-/// Number of a pixel in an image of so many rows.
-inline std::size_t pixelOf(int column, int row, int rows) {
-  return static_cast<std::size_t>(column) * static_cast<std::size_t>(rows) + static_cast<std::size_t>(row);
-}
-
-DONEX_WIDE_LOOPS void projectAll(const Eigen::Vector3f* echoes, const std::uint8_t* is_echo, std::size_t count,
-                                 std::int32_t* columns, std::int32_t* rows, float* ranges) {
-  const auto* xyz = reinterpret_cast<const float*>(echoes);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Projected pixel = project(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]);
-    const bool valid = static_cast<int>(pixel.valid) & static_cast<int>(is_echo[i] != 0);
-    columns[i] = pixel.column;
-    rows[i] = valid ? pixel.row : -1;
-    ranges[i] = std::min(std::max(pixel.range / kRangeStep, 1.0F), 65535.0F);
+/// Those within `reach` of one that is set.
+std::array<std::uint8_t, kColumns> around(const std::array<std::uint8_t, kColumns>& columns, int reach) {
+  std::array<std::uint8_t, kColumns> result = columns;
+  for (int step = 1; step <= reach; ++step) {
+    for (std::size_t c = 0; c < kColumns; ++c) {
+      const auto ahead = static_cast<std::size_t>(step);
+      const bool is_beside = columns[(c + ahead) & (kColumns - 1)] != 0 || columns[(c - ahead) & (kColumns - 1)] != 0;
+      if (is_beside) result[c] = 1;
+    }
   }
+  return result;
 }
 
 }  // namespace
 
-void SightImage::build(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo,
-                       const Reading& reading) {
-  collect(echoes, is_echo);
-  hit_.reserve(kPixels);
-  hit_ = nearest_;
-  if (!reading.careful) return;
-  fillBetweenBeams(static_cast<int>(reading.largest_gap / static_cast<double>(kRowHeight)));
-  fillBetweenColumns();
-  erode();
+void SightImage::clear() {
+  rows_ = first_row_ = 0;
+  nearest_.clear();
+  hit_.clear();
+  covered_ = {};
 }
 
-void SightImage::collect(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo) {
-  const std::size_t count = echoes.size();
-  pixels_.resize(count);
-  projectAll(echoes.data(), is_echo.data(), count, pixels_.columns.data(), pixels_.rows.data(), pixels_.ranges.data());
+void SightImage::add(const SightPixels& seen, const Reading& reading, Workspace& workspace) {
+  if (!makeRoomFor(seen, workspace)) return;
+  const Columns changed = collect(seen);
+  const Columns beside = around(changed, kAsCovered);
+  for (std::size_t c = 0; c < kColumns; ++c) covered_[c] = std::max(covered_[c], beside[c]);
+  if (reading.careful) {
+    readCarefully(changed, static_cast<int>(reading.largest_gap / static_cast<double>(SightPixels::kRowHeight)),
+                  workspace);
+    return;
+  }
+  for (int c = 0; c < kColumns; ++c) {
+    if (changed[static_cast<std::size_t>(c)] != 0) {
+      std::copy_n(hit_.begin() + startOf(c), rows_, nearest_.begin() + startOf(c));
+    }
+  }
+}
+
+/// False where nothing was seen.
+bool SightImage::makeRoomFor(const SightPixels& seen, Workspace& workspace) {
   int lowest = std::numeric_limits<int>::max(), highest = -1;
-  for (const std::int32_t row : pixels_.rows) {
+  for (const std::int32_t row : seen.rows()) {
     lowest = std::min(lowest, row < 0 ? lowest : row);
     highest = std::max(highest, row);
   }
-  first_row_ = highest < 0 ? 0 : lowest;
-  rows_ = highest < 0 ? 0 : highest - lowest + 1;
-  nearest_.reserve(kPixels);
-  nearest_.assign(pixelOf(kColumns, 0, rows_), 0);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (pixels_.rows[i] < 0) continue;
-    const auto range = static_cast<Range>(pixels_.ranges[i]);
-    Range& nearest = nearest_[pixelOf(pixels_.columns[i], pixels_.rows[i] - first_row_, rows_)];
+  if (highest < 0) return false;
+  if (rows_ == 0) {
+    first_row_ = lowest;
+    rows_ = highest - lowest + 1;
+    hit_.reserve(kPixels);
+    nearest_.reserve(kPixels);
+    hit_.assign(static_cast<std::size_t>(kColumns) * static_cast<std::size_t>(rows_), 0);
+    nearest_.assign(hit_.size(), 0);
+    return true;
+  }
+  const bool has_room = lowest >= first_row_ && highest < first_row_ + rows_;
+  if (has_room) return true;
+  const int last = std::min(std::max(highest + kMoreRows, first_row_ + rows_ - 1), SightPixels::kRows - 1);
+  const int first = std::max(std::min(lowest - kMoreRows, first_row_), 0);
+  layOut(hit_, first, last - first + 1, workspace.beams);
+  layOut(nearest_, first, last - first + 1, workspace.beams);
+  first_row_ = first;
+  rows_ = last - first + 1;
+  return true;
+}
+
+void SightImage::layOut(std::vector<Range>& image, int first_row, int rows, std::vector<Range>& scratch) const {
+  scratch.reserve(kPixels);
+  scratch.assign(image.begin(), image.end());
+  image.assign(static_cast<std::size_t>(kColumns) * static_cast<std::size_t>(rows), 0);
+  for (int c = 0; c < kColumns; ++c) {
+    std::copy_n(scratch.begin() + startOf(c), rows_,
+                image.begin() + static_cast<std::ptrdiff_t>(c) * rows + (first_row_ - first_row));
+  }
+}
+
+/// The columns that were hit.
+SightImage::Columns SightImage::collect(const SightPixels& seen) {
+  Columns changed{};
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (seen.row(i) < 0) continue;
+    const auto range = static_cast<Range>(seen.range(i));
+    Range& nearest = hit_[static_cast<std::size_t>(startOf(seen.column(i)) + seen.row(i) - first_row_)];
     if (nearest == 0 || range < nearest) nearest = range;
+    changed[static_cast<std::size_t>(seen.column(i))] = 1;
   }
+  return changed;
 }
 
-void SightImage::fillBetweenBeams(int largest_gap) {
-  for (int c = 0; c < kColumns; ++c) {
-    Range* column = nearest_.data() + static_cast<std::ptrdiff_t>(c) * rows_;
-    int last = -1;
-    for (int row = 0; row < rows_; ++row) {
-      if (column[row] == 0) continue;
-      const bool neighbours = last >= 0 && row - last <= largest_gap;
-      if (neighbours) std::fill(column + last + 1, column + row, std::min(column[last], column[row]));
-      last = row;
+/// What changes reaches a column farther with each of the last two steps; they need as much around again.
+void SightImage::readCarefully(const Columns& changed, int largest_gap, Workspace& workspace) {
+  for (std::vector<Range>* step : {&workspace.beams, &workspace.between, &workspace.upright}) {
+    step->reserve(kPixels);
+    step->resize(hit_.size());
+  }
+  const auto each = [](const Columns& columns, const auto& visit) {
+    for (int c = 0; c < kColumns; ++c) {
+      if (columns[static_cast<std::size_t>(c)] != 0) visit(c);
     }
-  }
-}
-
-void SightImage::fillBetweenColumns() {
-  // Only single columns: a sensor whose azimuth steps are a little wider than ours.
-  scratch_.reserve(kPixels);
-  scratch_ = nearest_;
-  for (int c = 0; c < kColumns; ++c) {
-    const Range* left = scratch_.data() + static_cast<std::ptrdiff_t>((c - 1) & (kColumns - 1)) * rows_;
-    const Range* right = scratch_.data() + static_cast<std::ptrdiff_t>((c + 1) & (kColumns - 1)) * rows_;
-    Range* column = nearest_.data() + static_cast<std::ptrdiff_t>(c) * rows_;
-    for (int row = 0; row < rows_; ++row) {
-      const bool between = column[row] == 0 && left[row] != 0 && right[row] != 0;
-      if (between) column[row] = std::min(left[row], right[row]);
-    }
-  }
-}
-
-void SightImage::erode() {
-  // Unknown pixels around say nothing: as unsigned, 0 - 1 is the largest range, so min passes them by.
-  const auto nearer = [](Range a, Range b) {
-    return static_cast<Range>(std::min<Range>(static_cast<Range>(a - 1), static_cast<Range>(b - 1)) + 1);
   };
-  scratch_.resize(nearest_.size());
-  for (int c = 0; c < kColumns; ++c) {
-    const Range* column = nearest_.data() + static_cast<std::ptrdiff_t>(c) * rows_;
-    Range* result = scratch_.data() + static_cast<std::ptrdiff_t>(c) * rows_;
-    for (int row = 0; row < rows_; ++row) {
-      const Range below = row > 0 ? column[row - 1] : Range{0}, above = row + 1 < rows_ ? column[row + 1] : Range{0};
-      result[row] = nearer(column[row], nearer(below, above));
-    }
+  const Columns to_change = around(changed, 2), to_erode = around(changed, 3);
+  each(around(changed, 4), [&](int c) { fillBetweenBeams(c, largest_gap, workspace.beams); });
+  each(to_erode, [&](int c) {
+    fillBetweenColumns(c, workspace.beams, workspace.between);
+    erodeUpright(c, workspace.between, workspace.upright);
+  });
+  each(to_change, [&](int c) { erodeAcross(c, workspace.between, workspace.upright); });
+}
+
+void SightImage::fillBetweenBeams(int column, int largest_gap, std::vector<Range>& beams) const {
+  Range* filled = beams.data() + startOf(column);
+  std::copy_n(hit_.data() + startOf(column), rows_, filled);
+  int last = -1;
+  for (int row = 0; row < rows_; ++row) {
+    if (filled[row] == 0) continue;
+    const bool neighbours = last >= 0 && row - last <= largest_gap;
+    if (neighbours) std::fill(filled + last + 1, filled + row, std::min(filled[last], filled[row]));
+    last = row;
   }
-  for (int c = 0; c < kColumns; ++c) {
-    const Range* left = scratch_.data() + static_cast<std::ptrdiff_t>((c - 1) & (kColumns - 1)) * rows_;
-    const Range* right = scratch_.data() + static_cast<std::ptrdiff_t>((c + 1) & (kColumns - 1)) * rows_;
-    const Range* middle = scratch_.data() + static_cast<std::ptrdiff_t>(c) * rows_;
-    Range* column = nearest_.data() + static_cast<std::ptrdiff_t>(c) * rows_;
-    for (int row = 0; row < rows_; ++row) {
-      if (column[row] != 0) column[row] = nearer(middle[row], nearer(left[row], right[row]));
-    }
+}
+
+/// Only single columns: a sensor whose azimuth steps are a little wider than ours.
+void SightImage::fillBetweenColumns(int column, const std::vector<Range>& beams, std::vector<Range>& between) const {
+  const Range* left = beams.data() + startOf(column - 1);
+  const Range* right = beams.data() + startOf(column + 1);
+  const Range* middle = beams.data() + startOf(column);
+  Range* filled = between.data() + startOf(column);
+  for (int row = 0; row < rows_; ++row) {
+    const bool is_between = middle[row] == 0 && left[row] != 0 && right[row] != 0;
+    filled[row] = is_between ? std::min(left[row], right[row]) : middle[row];
   }
+}
+
+namespace {
+
+/// Unknown pixels around say nothing: as unsigned, 0 - 1 is the largest range, so min passes them by.
+inline std::uint16_t nearer(std::uint16_t a, std::uint16_t b) {
+  const auto least = std::min<std::uint16_t>(static_cast<std::uint16_t>(a - 1), static_cast<std::uint16_t>(b - 1));
+  return static_cast<std::uint16_t>(least + 1);
+}
+
+}  // namespace
+
+void SightImage::erodeUpright(int column, const std::vector<Range>& between, std::vector<Range>& upright) const {
+  const Range* ranges = between.data() + startOf(column);
+  Range* result = upright.data() + startOf(column);
+  for (int row = 0; row < rows_; ++row) {
+    const Range below = row > 0 ? ranges[row - 1] : Range{0}, above = row + 1 < rows_ ? ranges[row + 1] : Range{0};
+    result[row] = nearer(ranges[row], nearer(below, above));
+  }
+}
+
+void SightImage::erodeAcross(int column, const std::vector<Range>& between, const std::vector<Range>& upright) {
+  const Range* left = upright.data() + startOf(column - 1);
+  const Range* right = upright.data() + startOf(column + 1);
+  const Range* middle = upright.data() + startOf(column);
+  const Range* known = between.data() + startOf(column);
+  Range* result = nearest_.data() + startOf(column);
+  for (int row = 0; row < rows_; ++row) {
+    result[row] = known[row] != 0 ? nearer(middle[row], nearer(left[row], right[row])) : Range{0};
+  }
+}
+
+bool SightImage::looksAt(const Eigen::Vector3f& point) const {
+  const SightPixels::Pixel pixel = SightPixels::of(point);
+  return pixel.valid && covered_[static_cast<std::size_t>(pixel.column)] != 0;
 }
 
 SightImage::Sight SightImage::at(const Eigen::Vector3f& point, float margin) const {
@@ -163,23 +191,19 @@ SightImage::Sight SightImage::throughGaps(const Eigen::Vector3f& point, float ma
 }
 
 SightImage::Sight SightImage::read(const std::vector<Range>& image, const Eigen::Vector3f& point, float margin) const {
-  const Projected pixel = project(point.x(), point.y(), point.z());
+  const SightPixels::Pixel pixel = SightPixels::of(point);
   if (!pixel.valid) return Sight::kUnknown;
   const int row = pixel.row - first_row_;
   if (row < 0 || row >= rows_ || image.empty()) return Sight::kUnknown;
-  const Range nearest = image[pixelOf(pixel.column, row, rows_)];
+  const Range nearest = image[static_cast<std::size_t>(startOf(pixel.column) + row)];
   if (nearest == 0) return Sight::kUnknown;
   const float beyond = static_cast<float>(nearest) * kRangeStep - pixel.range;
   if (beyond > margin) return Sight::kFree;
   return beyond > -margin ? Sight::kSurface : Sight::kHidden;
 }
 
-double SightImage::workspaceBytes(double echoes) { return 2.0 * answerBytes() + roomFor(3.0 * sizeof(float) * echoes); }
-
 double SightImage::answerBytes() { return static_cast<double>(kPixels * sizeof(Range)); }
 
-std::size_t SightImage::memoryBytes() const {
-  return (nearest_.capacity() + hit_.capacity() + scratch_.capacity()) * sizeof(Range) + pixels_.bytes();
-}
+std::size_t SightImage::memoryBytes() const { return (nearest_.capacity() + hit_.capacity()) * sizeof(Range); }
 
 }  // namespace donex

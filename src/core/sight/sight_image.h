@@ -1,17 +1,19 @@
-// How far one scan saw in every direction: the space it proves to be free, read carefully.
+// How far a sensor saw in every direction during one turn: the space it proves to be free, read carefully.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include "core/grid/storage.h"
+#include "core/sight/sight_pixels.h"
 
 namespace donex {
 
-/// The lines of sight of a scan as an image of ranges around the sensor (algorithm: "Free
+/// The lines of sight of a turn as an image of ranges around the sensor (algorithm: "Free
 /// evidence", "Careful sight"). A pixel holds the nearest range of its direction; "free" needs a surface behind the
 /// asked point, never the mere absence of an echo (the sky, a dark car).
 ///
@@ -25,16 +27,30 @@ class SightImage {
     double largest_gap = 0.038;  ///< tangent of the angle between two beams that are read as neighbours
   };
 
-  /// `echoes` in the sensor's frame [m]; those with `is_echo` 0 are left out.
-  void build(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo,
-             const Reading& reading);
+  /// Storage for the steps of reading carefully; it holds nothing in between.
+  struct Workspace {
+    std::vector<std::uint16_t> beams, between, upright;
 
-  /// Hands on to a later scan's image what its build needs: storage that answers do not, and that for single lines of
-  /// sight, which this one is not asked for any more.
-  void handOn(SightImage& later) {
-    later.scratch_ = std::move(scratch_);
-    later.pixels_ = std::move(pixels_);
-    later.hit_ = std::move(hit_);
+    std::size_t memoryBytes() const {
+      return (beams.capacity() + between.capacity() + upright.capacity()) * sizeof(std::uint16_t);
+    }
+  };
+
+  /// Forgets everything.
+  void clear();
+  /// Adds what a cloud saw, given in the image's own frame. A cloud may be any part of what the sensor sees: directions
+  /// that no cloud covers say nothing, and parts that are added one by one make the same image as all of them at once.
+  void add(const SightPixels& seen, const Reading& reading, Workspace& workspace);
+
+  /// Whether anything came back from about the direction of a point of the image's frame [m].
+  bool looksAt(const Eigen::Vector3f& point) const;
+
+  /// Single lines of sight are not asked for any more: gives their storage to a later image. False where it has none.
+  bool handOn(SightImage& later) {
+    if (hit_.capacity() == 0) return false;
+    later.hit_.swap(hit_);
+    hit_ = {};
+    return true;
   }
 
   enum class Sight { kUnknown, kFree, kSurface, kHidden };
@@ -49,36 +65,31 @@ class SightImage {
   std::size_t memoryBytes() const;
   /// What an image's answers take, whatever the sensor covers [bytes]: it is reserved, and only what it covers is used.
   static double answerBytes();
-  /// What the newest image has besides for so many echoes [bytes].
-  static double workspaceBytes(double echoes);
+  /// What a Workspace takes [bytes].
+  static double workspaceBytes() { return 3.0 * answerBytes(); }
 
  private:
-  /// By echo: where it lies in the image; row -1 where nowhere.
-  struct Pixels {
-    std::vector<std::int32_t> columns, rows;
-    std::vector<float> ranges;  ///< [kRangeStep]
-
-    void resize(std::size_t count) {
-      resizeTo(columns, count);
-      resizeTo(rows, count);
-      resizeTo(ranges, count);
-    }
-    std::size_t bytes() const { return 3 * columns.capacity() * sizeof(float); }
-  };
-
   using Range = std::uint16_t;  ///< [kRangeStep], rounded down; 0 where nothing is known
+  using Columns = std::array<std::uint8_t, SightPixels::kColumns>;
 
   Sight read(const std::vector<Range>& image, const Eigen::Vector3f& point, float margin) const;
-  void collect(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo);
-  void fillBetweenBeams(int largest_gap);
-  void fillBetweenColumns();
-  void erode();
+  bool makeRoomFor(const SightPixels& seen, Workspace& workspace);
+  void layOut(std::vector<Range>& image, int first_row, int rows, std::vector<Range>& scratch) const;
+  Columns collect(const SightPixels& seen);
+  void readCarefully(const Columns& changed, int largest_gap, Workspace& workspace);
+  void fillBetweenBeams(int column, int largest_gap, std::vector<Range>& beams) const;
+  void fillBetweenColumns(int column, const std::vector<Range>& beams, std::vector<Range>& between) const;
+  void erodeUpright(int column, const std::vector<Range>& between, std::vector<Range>& upright) const;
+  void erodeAcross(int column, const std::vector<Range>& between, const std::vector<Range>& upright);
+  /// Columns wrap around.
+  std::ptrdiff_t startOf(int column) const {
+    return static_cast<std::ptrdiff_t>(column & (SightPixels::kColumns - 1)) * rows_;
+  }
 
   int first_row_ = 0, rows_ = 0;  ///< the part of the image that the sensor covers
   std::vector<Range> nearest_;    ///< by column, then row
   std::vector<Range> hit_;        ///< the same, of single lines of sight
-  std::vector<Range> scratch_;
-  Pixels pixels_;
+  Columns covered_{};             ///< 1 where an echo came back, or in a column beside
 };
 
 }  // namespace donex

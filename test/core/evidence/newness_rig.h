@@ -30,19 +30,20 @@ class Rig {
   /// Places of the scan's echoes; `check(echo in the window, the same in m, place)` for those in the grid.
   template <class Check>
   void process(const Scan& scan, Check&& check) {
-    clock.begin(scan.stamp);
+    const std::vector<std::uint8_t> is_echo(scan.echoes.size(), 1);
+    if (history.arrive(scan, is_echo)) clock.begin(scan.stamp);
     newness.shift(scan.odom_from_base);
     const GridWindow& window = newness.window();
     GridScan in_grid;
     window.enter(scan, in_grid);
     const Eigen::Vector3d corner = window.minIndex().template cast<double>() * window.voxelSize();
-    before = history.seenFrom(window.odomFromGrid() * Eigen::Translation3d(corner));
+    before = history.seenBefore(window.odomFromGrid() * Eigen::Translation3d(corner));
     for (std::size_t i = 0; i < scan.echoes.size(); ++i) {
       if (in_grid.inside[i] == 0) continue;
       const Eigen::Vector3f point = in_grid.echoes[i] * static_cast<float>(window.voxelSize());
       check(in_grid.echoes[i], point, newness.judge(in_grid.echoes[i], point, clock, before));
     }
-    history.add(scan, std::vector<std::uint8_t>(scan.echoes.size(), 1));
+    history.add(scan, is_echo);
   }
 
   /// Place of the scan's first echo.

@@ -26,6 +26,7 @@ struct Left {
 /// A scan, its sight and its first object as a segment.
 struct Seen {
   explicit Seen(const JudgedScene& seen, std::size_t echoes) : scene(seen) {
+    history.arrive(scene.scan(), scene.judged.is_echo);
     history.add(scene.scan(), scene.judged.is_echo);
     for (std::size_t i = 0; i < echoes; ++i) segment.echoes.push_back(static_cast<std::uint32_t>(i));
     describeEchoes(scene.judged, segment);

@@ -22,6 +22,7 @@ class Followed {
 
   /// Number of the scan's echoes that move.
   std::size_t step(const JudgedScene& scene) {
+    history_.arrive(scene.scan(), scene.judged.is_echo);
     history_.add(scene.scan(), scene.judged.is_echo);
     tracker.predict(scene.judged.stamp, predictions_);
     segmenter_.segment(scene.judged, predictions_, segments);

@@ -32,7 +32,10 @@ Scan shell(double stamp, double range, const Eigen::Isometry3d& odom_from_base =
 
 std::vector<std::uint8_t> all(const Scan& scan) { return std::vector<std::uint8_t>(scan.echoes.size(), 1); }
 
-void add(SightHistory& history, const Scan& scan) { history.add(scan, all(scan)); }
+void add(SightHistory& history, const Scan& scan) {
+  history.arrive(scan, all(scan));
+  history.add(scan, all(scan));
+}
 
 int sum(const Evidence& evidence) { return evidence.free + evidence.surface + evidence.hidden; }
 
@@ -109,7 +112,9 @@ TEST(SightHistory, TheNewestScanAlone) {
 TEST(SightHistory, EchoesThatAreNoneAreLeftOut) {
   SightHistory history(10.0, 0.0, 0.5F, kReading);
   const Scan scan = shell(1.0, 20.0);
-  history.add(scan, std::vector<std::uint8_t>(scan.echoes.size(), 0));
+  const std::vector<std::uint8_t> none(scan.echoes.size(), 0);
+  history.arrive(scan, none);
+  history.add(scan, none);
   EXPECT_EQ(kept(history), 0);
 }
 

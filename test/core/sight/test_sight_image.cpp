@@ -17,9 +17,17 @@ using Sight = SightImage::Sight;
 using oracle::Sights;
 using Echoes = std::vector<Eigen::Vector3f>;
 
+void add(SightImage& image, const Echoes& echoes, const std::vector<std::uint8_t>& is_echo,
+         const SightImage::Reading& reading) {
+  SightPixels pixels;
+  pixels.project(echoes, is_echo);
+  SightImage::Workspace workspace;
+  image.add(pixels, reading, workspace);
+}
+
 SightImage imageOf(const Echoes& echoes, const SightImage::Reading& reading = {}) {
   SightImage image;
-  image.build(echoes, std::vector<std::uint8_t>(echoes.size(), 1), reading);
+  add(image, echoes, std::vector<std::uint8_t>(echoes.size(), 1), reading);
   return image;
 }
 
@@ -43,7 +51,7 @@ TEST(SightImage, WhatHasNoDirectionSaysNothing) {
   echoes.insert(echoes.end(), nowhere.begin(), nowhere.end());
   is_echo.resize(echoes.size(), 0);
   SightImage image;
-  image.build(echoes, is_echo, {});
+  add(image, echoes, is_echo, {});
   EXPECT_EQ(image.at({5.0F, 0.0F, 0.0F}, 0.1F), Sight::kFree);
   for (const Eigen::Vector3f& point : nowhere) EXPECT_EQ(image.at(point, 0.1F), Sight::kUnknown);
 }
@@ -82,29 +90,59 @@ class AgainstPlainReading : public ::testing::TestWithParam<Case> {
     ++seen[static_cast<std::size_t>(expected)];
   }
 
+  void drawEchoes() {
+    for (int i = 0; i < GetParam().echoes; ++i) {
+      echoes_.push_back(pointIn(drawPixel(), draw(1.0, 60.0)));
+      is_echo_.push_back(draw(0, 9) == 0 ? 0 : 1);
+    }
+  }
+
+  void compare(const SightImage& image) {
+    const Sights sights(echoes_, is_echo_, GetParam().reading);
+    std::array<int, 4> seen{}, through_gaps{};
+    for (int i = 0; i < 8000; ++i) {
+      const Sights::Pixel pixel = drawPixel();
+      ask(pixel, sights.rangeAt(pixel), seen, [&](const auto& point) { return image.at(point, kMargin); });
+      ask(pixel, sights.rangeThroughGaps(pixel), through_gaps,
+          [&](const auto& point) { return image.throughGaps(point, kMargin); });
+    }
+    for (const int count : seen) EXPECT_GT(count, 20);
+    for (const int count : through_gaps) EXPECT_GT(count, 20);
+  }
+
+  Echoes echoes_;
+  std::vector<std::uint8_t> is_echo_;
   std::mt19937 random_{GetParam().seed};
 };
 
 TEST_P(AgainstPlainReading, EveryPixelAtRandomRanges) {
-  Echoes echoes;
-  std::vector<std::uint8_t> is_echo;
-  for (int i = 0; i < GetParam().echoes; ++i) {
-    echoes.push_back(pointIn(drawPixel(), draw(1.0, 60.0)));
-    is_echo.push_back(draw(0, 9) == 0 ? 0 : 1);
-  }
+  drawEchoes();
   SightImage image;
-  image.build(echoes, is_echo, GetParam().reading);
-  const Sights sights(echoes, is_echo, GetParam().reading);
+  add(image, echoes_, is_echo_, GetParam().reading);
+  compare(image);
+}
 
-  std::array<int, 4> seen{}, through_gaps{};
-  for (int i = 0; i < 8000; ++i) {
-    const Sights::Pixel pixel = drawPixel();
-    ask(pixel, sights.rangeAt(pixel), seen, [&](const auto& point) { return image.at(point, kMargin); });
-    ask(pixel, sights.rangeThroughGaps(pixel), through_gaps,
-        [&](const auto& point) { return image.throughGaps(point, kMargin); });
+/// Any parts, in any order: sectors, rows, echoes of everywhere.
+TEST_P(AgainstPlainReading, PartsMakeTheImageOfTheWhole) {
+  drawEchoes();
+  for (const int parts : {2, 7, 40}) {
+    const int kind = draw(0, 2), offset = draw(0, parts - 1);
+    SightImage image;
+    for (int part = 0; part < parts; ++part) {
+      Echoes echoes;
+      std::vector<std::uint8_t> is_echo;
+      for (std::size_t i = 0; i < echoes_.size(); ++i) {
+        const auto pixel = Sights::pixelOf(echoes_[i]).value();
+        const int by_column = pixel[0] * parts / Sights::kColumns, by_row = pixel[1] % parts;
+        const int of_echo = kind == 0 ? by_column : kind == 1 ? by_row : static_cast<int>(i) % parts;
+        if (of_echo != (part * 3 + offset) % parts) continue;
+        echoes.push_back(echoes_[i]);
+        is_echo.push_back(is_echo_[i]);
+      }
+      add(image, echoes, is_echo, GetParam().reading);
+    }
+    compare(image);
   }
-  for (const int count : seen) EXPECT_GT(count, 20);
-  for (const int count : through_gaps) EXPECT_GT(count, 20);
 }
 
 std::vector<Case> cases() {
@@ -157,7 +195,7 @@ TEST(SightImage, NothingIsKnownOfAnEmptyScan) {
   EXPECT_EQ(imageOf({}).at({5.0F, 1.0F, 0.0F}, 0.5F), Sight::kUnknown);
   const Echoes none(3, Eigen::Vector3f(10.0F, 0.0F, 0.0F));
   SightImage image;
-  image.build(none, {0, 0, 0}, {});
+  add(image, none, {0, 0, 0}, {});
   EXPECT_EQ(image.at({5.0F, 0.0F, 0.0F}, 0.5F), Sight::kUnknown);
 }
 
@@ -196,14 +234,16 @@ TEST(SightImage, WhoHandsOnIsAskedOnButNoMoreThroughGaps) {
   EXPECT_EQ(older.at(between, 0.5F), Sight::kFree);
   EXPECT_EQ(older.throughGaps(on_beam, 0.5F), Sight::kUnknown);
   const Echoes nearer = shell(8.0, 6);
-  newest.build(nearer, std::vector<std::uint8_t>(nearer.size(), 1), {});
+  add(newest, nearer, std::vector<std::uint8_t>(nearer.size(), 1), {});
   EXPECT_EQ(newest.throughGaps(on_beam, 0.5F), Sight::kHidden);
 }
 
 TEST(SightImage, WhatIsBuiltBeforeIsForgotten) {
   SightImage image = imageOf(shell(20.0));
   const Echoes nearer = shell(8.0);
-  image.build(nearer, std::vector<std::uint8_t>(nearer.size(), 1), {});
+  image.clear();
+  EXPECT_EQ(image.at({5.0F, 0.0F, 0.0F}, 0.5F), Sight::kUnknown);
+  add(image, nearer, std::vector<std::uint8_t>(nearer.size(), 1), {});
   EXPECT_EQ(image.at({12.0F, 0.0F, 0.0F}, 0.5F), Sight::kHidden);
   EXPECT_EQ(image.at({5.0F, 0.0F, 0.0F}, 0.5F), Sight::kFree);
 }

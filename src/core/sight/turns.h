@@ -1,0 +1,45 @@
+// Which clouds make up one turn (algorithm: "Parts of scans").
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/sight/sight_pixels.h"
+#include "donex/scan.h"
+
+namespace donex {
+
+/// A turn is the clouds from one on until a sensor looks again where it has looked since. Whole scans are a turn each;
+/// a sensor that publishes sectors, and several sensors on one vehicle, have turns of several clouds, in whatever order
+/// they come. All of that is measured in the directions of the echoes; nothing tells what a cloud is.
+class Turns {
+ public:
+  /// Takes the next cloud. `seen`: its pixels in its own frame. True where it begins a turn.
+  bool arrive(const Scan& scan, const SightPixels& seen);
+  /// Whether two mountings are one sensor's.
+  static bool areOne(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b);
+  /// The next cloud begins a turn.
+  void reset() { sensors_.clear(); }
+
+  static constexpr double kLongest = 0.3;         ///< [s] what parts see in longer turns is not of one place any more
+  static constexpr double kSamePlace = 0.05;      ///< [m] between two mountings of one sensor,
+  static constexpr double kSameAxes = 0.02;       ///< [rad] and between their axes
+  static constexpr std::size_t kMostSensors = 8;  ///< in a turn
+
+ private:
+  using Columns = std::array<std::uint8_t, SightPixels::kColumns>;
+  /// What a sensor has looked at in this turn.
+  struct Sensor {
+    Eigen::Isometry3d base_from_sensor;
+    Columns looked;
+  };
+
+  static Columns columnsOf(const SightPixels& seen);
+  Sensor* sensorAt(const Eigen::Isometry3d& base_from_sensor);
+
+  double begin_ = 0.0;  ///< [s]
+  std::vector<Sensor> sensors_;
+};
+
+}  // namespace donex

@@ -1,0 +1,142 @@
+// Which clouds are one turn: nothing but their directions tells.
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "core/sight/sight_history.h"
+
+namespace donex {
+namespace {
+
+/// Echoes at azimuths `from` to `to` [deg].
+Scan sector(double stamp, double from, double to, double range = 20.0) {
+  Scan scan;
+  scan.stamp = stamp;
+  for (double azimuth = from + 0.1; azimuth < to; azimuth += 0.2) {
+    for (int beam = -4; beam <= 4; ++beam) {
+      const double angle = azimuth * M_PI / 180.0;
+      const Eigen::Vector3d direction(std::cos(angle), std::sin(angle), 0.02 * beam);
+      scan.echoes.push_back((range * direction.normalized()).cast<float>());
+    }
+  }
+  return scan;
+}
+
+/// Number of each cloud's turn.
+std::vector<int> turnsOf(const std::vector<Scan>& clouds) {
+  Turns turns;
+  SightPixels pixels;
+  std::vector<int> result;
+  int turn = 0;
+  for (const Scan& cloud : clouds) {
+    pixels.project(cloud.echoes, std::vector<std::uint8_t>(cloud.echoes.size(), 1));
+    turn += turns.arrive(cloud, pixels) ? 1 : 0;
+    result.push_back(turn);
+  }
+  return result;
+}
+
+TEST(Turns, WholeScansAreATurnEach) {
+  EXPECT_EQ(turnsOf({sector(0.0, 0.0, 360.0), sector(0.1, 0.0, 360.0), sector(0.2, 0.0, 360.0)}),
+            (std::vector<int>{1, 2, 3}));
+}
+
+TEST(Turns, AnyScanOfAnEverNarrowFieldOfViewIsATurn) {
+  EXPECT_EQ(turnsOf({sector(0.0, -20.0, 20.0), sector(0.01, -20.0, 20.0), sector(0.02, -20.0, 20.0)}),
+            (std::vector<int>{1, 2, 3}));
+}
+
+TEST(Turns, PartsOfATurnAreOneHoweverMany) {
+  for (const int parts : {2, 4, 10, 40, 180}) {
+    std::vector<Scan> clouds;
+    std::vector<int> expected;
+    for (int k = 0; k < 3 * parts; ++k) {
+      const double width = 360.0 / parts;
+      clouds.push_back(sector(0.1 * k / parts, width * (k % parts), width * (k % parts + 1)));
+      expected.push_back(1 + k / parts);
+    }
+    EXPECT_EQ(turnsOf(clouds), expected) << parts << " parts";
+  }
+}
+
+TEST(Turns, SectorsInAnyOrder) {
+  std::vector<Scan> clouds;
+  std::vector<int> expected;
+  for (int k = 0; k < 20; ++k) {
+    const int part = (k * 3) % 10;
+    clouds.push_back(sector(0.01 * k, 36.0 * part, 36.0 * (part + 1)));
+    expected.push_back(1 + k / 10);
+  }
+  EXPECT_EQ(turnsOf(clouds), expected);
+}
+
+TEST(Turns, LostPartsDelayNothing) {
+  std::vector<Scan> clouds;
+  for (int k = 0; k < 12; ++k) {
+    if (k == 5) continue;  // the second turn's second quarter
+    clouds.push_back(sector(0.025 * k, 90.0 * (k % 4), 90.0 * (k % 4 + 1)));
+  }
+  EXPECT_EQ(turnsOf(clouds), (std::vector<int>{1, 1, 1, 1, 2, 2, 2, 3, 3, 3, 3}));
+}
+
+TEST(Turns, APartThatComesTwiceBeginsATurn) {
+  EXPECT_EQ(turnsOf({sector(0.0, 0.0, 90.0), sector(0.025, 90.0, 180.0), sector(0.026, 90.0, 180.0)}),
+            (std::vector<int>{1, 1, 2}));
+}
+
+TEST(Turns, SeveralSensorsShareThem) {
+  std::vector<Scan> clouds;
+  for (int k = 0; k < 6; ++k) {
+    clouds.push_back(sector(0.05 * k, -90.0, 90.0));
+    if (k % 2 != 0) clouds.back().base_from_sensor = Eigen::Translation3d(2.0, 0.0, 0.0);
+  }
+  EXPECT_EQ(turnsOf(clouds), (std::vector<int>{1, 1, 2, 2, 3, 3}));
+}
+
+TEST(Turns, NoneIsLongerThanItMayBe) {
+  std::vector<Scan> clouds;
+  for (int k = 0; k < 8; ++k) clouds.push_back(sector(0.08 * k, 10.0 * k, 10.0 * k + 10.0));
+  EXPECT_EQ(turnsOf(clouds), (std::vector<int>{1, 1, 1, 1, 2, 2, 2, 2}));
+}
+
+/// As the detector uses it.
+void take(SightHistory& history, const Scan& scan) {
+  const std::vector<std::uint8_t> is_echo(scan.echoes.size(), 1);
+  history.arrive(scan, is_echo);
+  history.add(scan, is_echo);
+}
+
+TEST(Turns, APartIsOneLookAndReplacesNothingElse) {
+  SightHistory history(2.0, 0.09, 0.5F, {true, 0.038});
+  const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
+  const Eigen::Vector3f left(0.0F, 10.0F, 0.0F), right(0.0F, -10.0F, 0.0F);
+  constexpr int kAll = 1000;
+  for (int k = 0; k < 40; ++k) take(history, sector(0.025 * k, 90.0 * (k % 4), 90.0 * (k % 4 + 1)));
+  for (const auto& side : {left, right}) {
+    EXPECT_EQ(history.seenFrom(here).ask(side, -1.0, kAll).free, 10);
+    EXPECT_EQ(history.seenBefore(here).ask(side, -1.0, kAll).free, 9) << "the present turn is not before itself";
+  }
+  take(history, sector(1.0, 0.0, 180.0, 5.0));
+  EXPECT_EQ(history.newestSeenFrom(here).at(left), SightImage::Sight::kHidden);
+  EXPECT_EQ(history.newestSeenFrom(here).at(right), SightImage::Sight::kFree) << "seen last in the turn before";
+}
+
+TEST(Turns, PartsOnTheWaySeeFromWhereTheyWere) {
+  SightHistory history(2.0, 0.09, 0.5F, {true, 0.038});
+  const auto at = [](double stamp, double from, double x) {
+    Scan scan = sector(stamp, from, from + 180.0);
+    scan.odom_from_base = Eigen::Translation3d(x, 0.0, 0.0) * scan.odom_from_base;
+    return scan;
+  };
+  take(history, at(0.0, 0.0, 0.0));
+  take(history, at(0.05, 180.0, 3.0));
+  const SightView seen = history.seenFrom(Eigen::Isometry3d::Identity());
+  const auto free = [&](float x, float y) { return seen.ask(Eigen::Vector3f(x, y, 0.0F), -1.0, 10).free; };
+  EXPECT_EQ(free(0.0F, 18.0F), 1);
+  EXPECT_EQ(free(3.0F, -18.0F), 1);
+  EXPECT_EQ(free(-17.9F, -2.0F), 0) << "the second part saw 3 m less far back";
+}
+
+}  // namespace
+}  // namespace donex
