@@ -93,6 +93,7 @@ struct MotionConfig {
   double odometry_timeout = 0.6;    // [s]
   bool deskew = true;
   bool publish_tf = false;
+  bool odometry_check = true;
 };
 
 /// What the clouds of a driver do not say themselves.
@@ -100,6 +101,7 @@ struct CloudConfig {
   std::string time_field;  // empty: found by its name
   TimeEncoding time_encoding = TimeEncoding::kAuto;
   double origin_x = 0.0, origin_y = 0.0, origin_z = 0.0;  // [m], the sensor in the clouds' frame
+  std::string sensor_frame;                               // empty: the clouds' own
 };
 
 /// What the node does beside labelling.

@@ -136,6 +136,11 @@ void visitMotion(MotionConfig& m, Visitor& visit) {
                       "where the ego motion is found in the clouds: also publish it as tf, fixed_frame to the vehicle",
                       false},
         m.publish_tf);
+  visit(ParameterInfo{"odometry_check", "",
+                      "compare odometry and tf with the motion that the clouds show, on a thread of its own, and say "
+                      "where they disagree and why; a jump forgets the grid",
+                      false},
+        m.odometry_check);
 }
 
 template <class Visitor>
@@ -154,6 +159,11 @@ void visitCloud(CloudConfig& c, Visitor& visit) {
         c.origin_x, -100.0, 100.0);
   visit(ParameterInfo{"origin_y", "m", "as origin_x", false}, c.origin_y, -100.0, 100.0);
   visit(ParameterInfo{"origin_z", "m", "as origin_x", false}, c.origin_z, -100.0, 100.0);
+  visit(ParameterInfo{"sensor_frame", "",
+                      "frame of the sensor that measured the clouds, where they are told in another one, as "
+                      "base_link or the odometry frame: lines of sight begin where tf has it at their stamp",
+                      false},
+        c.sensor_frame);
 }
 
 template <class Visitor>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <set>
 #include <stdexcept>
 
@@ -14,8 +15,10 @@
 #include "bag/checked_message.h"
 #include "bag/ground_truth.h"
 #include "bag/topics.h"
+#include "core/motion/odometry_calibration.h"
 #include "donex/whole_drive.h"
 #include "io/sequence.h"
+#include "ros/odometry_monitor.h"
 
 namespace donex {
 namespace fs = std::filesystem;
@@ -28,7 +31,13 @@ class Labeler {
  public:
   Labeler(const LabelBagOptions& options, const LabelBagSink& sink, LabelBagSummary& summary,
           std::shared_ptr<Detector> detector)
-      : sink_(sink), summary_(summary), pipeline_(options.config, tf_, events(), std::move(detector)) {}
+      : sink_(sink),
+        summary_(summary),
+        calibrates_(options.calibrate),
+        pipeline_(options.config, tf_, events(), std::move(detector)) {
+    if (isChecked(options.config.motion, options.config.motion.source))
+      check_.emplace(options.config.motion, options.calibrate);
+  }
 
   void beginPart(std::size_t part) { part_ = part; }
   void add(const rosbag::MessageInstance& message);
@@ -51,6 +60,13 @@ class Labeler {
   ros::Time now_;
   std::size_t part_ = 0;
   std::exception_ptr sink_fault_;
+  struct Mounting {
+    Eigen::Isometry3d base_from_sensor = Eigen::Isometry3d::Identity();
+    std::string base_frame, sensor_frame;
+  };
+  Mounting mounting_;  // of the newest scan
+  bool calibrates_;
+  std::optional<LabeledScanCheck> check_;
   tf2::BufferCore tf_;
   Pipeline pipeline_;  // last: it uses the others
 };
@@ -65,6 +81,10 @@ PipelineEvents Labeler::events() {
     remark(fmt::format("odometry refused, {}", describe(reason)), text);
   };
   events.forgotten = [this](const std::string& text) { remark("grid forgotten", text); };
+  events.flooded = [this](const std::string& text) {
+    remark("alarm", text + (check_ ? ", " + describe(check_->finding()) : ""));
+  };
+  events.strange_origin = [this](const std::string& text) { remark("origin of the clouds", text); };
   events.strange_times = [this](const std::string& text) { remark("clouds not de-skewed", text); };
   return events;
 }
@@ -76,6 +96,8 @@ void Labeler::remark(const std::string& kind, const std::string& text) {
 void Labeler::take(const LabeledScan& scan) {
   summary_.times.push_back(scan.processing_time);
   summary_.echoes += scan.labels.dynamic.size();
+  if (check_) check_->check(LabeledScanCheck::questionOf(scan));
+  mounting_ = {scan.motion.base_from_sensor, scan.motion.base_frame, scan.cloud->header.frame_id};
   const auto truth = truthOf(*scan.cloud, scan.layout);
   if (!truth.empty()) {
     summary_.evaluation.add(summary_.times.size() - 1, scan.scan.echoes, truth, asSemanticKitti(scan.labels));
@@ -116,6 +138,12 @@ void Labeler::finish() {
   pipeline_.finish();
   requireSink();
   summary_.counts = pipeline_.counts();
+  if (!check_) return;
+  summary_.check = summaryOf(check_->finding());
+  if (!calibrates_) return;
+  const OdometryCalibration calibration = calibrate(check_->details().scans(), ComparisonWindow());
+  summary_.calibration =
+      describe(calibration, mounting_.base_from_sensor, mounting_.base_frame, mounting_.sensor_frame);
 }
 
 std::string remarksOf(const LabelBagSummary& summary) {

@@ -17,6 +17,7 @@ struct LabelBagOptions {
   std::string points;  ///< topic of the clouds; empty: the only one of its type
   std::string odom;    ///< topic of the odometry; empty: the only one of its type
   std::string labeled = "/donex/labeled_points";
+  bool calibrate = false;  ///< also tell what the clouds say of mounting, scale and stamps of the odometry
   Config config;
 };
 
@@ -26,10 +27,12 @@ struct LabelBagSummary {
   std::size_t messages = 0;  ///< of the input
   std::size_t echoes = 0;
   PipelineCounts counts;
-  double duration = 0.0;             ///< from the first to the last message of the input [s]
-  std::vector<double> times;         ///< parsing and judging, a labelled cloud [s]
-  Evaluation evaluation;             ///< where the clouds carry their truth, as simulated ones do
-  std::vector<std::string> remarks;  ///< why data were dropped, refused or forgotten: the first of each kind
+  double duration = 0.0;                 ///< from the first to the last message of the input [s]
+  std::vector<double> times;             ///< parsing and judging, a labelled cloud [s]
+  Evaluation evaluation;                 ///< where the clouds carry their truth, as simulated ones do
+  std::string check;                     ///< odometry against the scans, one line; empty where that is not asked
+  std::vector<std::string> calibration;  ///< lines, where that was asked
+  std::vector<std::string> remarks;      ///< why data were dropped, refused or forgotten: the first of each kind
 };
 
 /// `progress` is called with the number of messages done and of all.

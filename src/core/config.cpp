@@ -108,6 +108,10 @@ std::vector<std::string> Config::faults() const {
   checkExtent("x", region.x_min, region.x_max, voxel_size, faults);
   checkExtent("y", region.y_min, region.y_max, voxel_size, faults);
   checkExtent("z", region.z_min, region.z_max, voxel_size, faults);
+  const bool has_origin = std::hypot(cloud.origin_x, cloud.origin_y, cloud.origin_z) > 0.0;
+  if (has_origin && !cloud.sensor_frame.empty()) {
+    faults.emplace_back("sensor_frame and origin_x, origin_y, origin_z both say where the sensor is: set one of them");
+  }
   return faults;
 }
 

@@ -20,7 +20,11 @@ double durationOf(const SequenceReader& sequence, std::size_t index) {
 }  // namespace
 
 DriveRun::DriveRun(const Config& config, DriveOdometry odometry) {
-  if (odometry == DriveOdometry::kLidar) odometry_.emplace();
+  if (odometry == DriveOdometry::kLidar) {
+    odometry_.emplace();
+  } else if (config.motion.odometry_check) {
+    check_.emplace();
+  }
   if (needsWholeDrive(config.method)) {
     whole_ = makeWholeDriveDetector(config);
   } else {
@@ -68,6 +72,20 @@ void DriveRun::learn(std::size_t index) {
   odometry_times_[index] += cpuTime() - start;
 }
 
+void DriveRun::followPoses(const Scan& scan) {
+  if (!(jump_.follow(scan.stamp, scan.odom_from_base) > 0.0)) return;
+  ++jumps_;
+  live_->reset();
+}
+
+/// The poses given, as a node checks those of its odometry; once, however often the drive is shown.
+void DriveRun::compare(const Scan& scan, std::size_t index) {
+  if (index != checked_) return;
+  ++checked_;
+  check_->check({scan.stamp, scan.echoes, scan.base_from_sensor, scan.odom_from_base});
+  if (live_ != nullptr) check_->learn(labels_.dynamic);
+}
+
 void DriveRun::run(const SequenceReader& sequence, std::size_t scans, const Sink& sink,
                    const std::function<void()>& progress) {
   times_.assign(scans, 0.0);
@@ -77,8 +95,10 @@ void DriveRun::run(const SequenceReader& sequence, std::size_t scans, const Sink
     for (std::size_t i = 0; i < scans; ++i) {
       Scan scan = toScan(sequence.scan(i));
       if (odometry_) locate(scan, i);
+      if (check_ && live_ != nullptr) followPoses(scan);
       judge(scan, i, durationOf(sequence, i));
       if (odometry_) learn(i);
+      if (check_) compare(scan, i);
       if (counts) sink(i, scan, labels_);
       progress();
     }

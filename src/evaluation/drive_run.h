@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "core/motion/lidar_odometry.h"
+#include "core/motion/odometry_check.h"
+#include "core/motion/odometry_jump.h"
 #include "donex/whole_drive.h"
 #include "evaluation/scan_parts.h"
 #include "io/sequence.h"
@@ -43,6 +45,12 @@ class DriveRun {
   const std::vector<TrackedScan>& tracked() const { return tracked_; }
   const std::vector<double>& odometryTimes() const { return odometry_times_; }
 
+  /// Of the poses given against the scans; null without them.
+  const OdometryCheck* check() const { return check_ ? &*check_ : nullptr; }
+
+  /// Jumps of the poses given, at each of which a live method has forgotten its grid.
+  std::size_t jumps() const { return jumps_; }
+
   /// Bytes held by the method's own memory after the last scan.
   std::size_t memoryBytes() const { return detector().memoryBytes(); }
 
@@ -53,12 +61,17 @@ class DriveRun {
   void judge(const Scan& scan, std::size_t index, double duration);
   void locate(Scan& scan, std::size_t index);
   void learn(std::size_t index);
+  void compare(const Scan& scan, std::size_t index);
+  void followPoses(const Scan& scan);
 
   std::unique_ptr<Detector> live_;
   std::unique_ptr<WholeDriveDetector> whole_;
   EchoLabels labels_, labels_of_part_;
   ScanParts parts_{1};
   std::optional<LidarOdometry> odometry_;
+  std::optional<OdometryCheck> check_;
+  OdometryJump jump_;
+  std::size_t checked_ = 0, jumps_ = 0;  // scans
   std::vector<TrackedScan> tracked_;
   std::vector<double> odometry_times_;
   std::vector<double> times_, cpu_times_;

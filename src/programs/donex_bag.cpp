@@ -21,6 +21,7 @@ struct Arguments {
   std::vector<std::string> files;  ///< IN.bag OUT.bag; with `directory` the parts of a recording
   std::string directory;           ///< where the labelled parts go
   std::string summary;
+  bool check_odometry = false;  ///< nothing is written
   bool overwrite = false;
 };
 
@@ -66,6 +67,8 @@ void report(const LabelBagSummary& summary) {
   fmt::print("{} messages; clouds {}, odometry {}\n", summary.messages, summary.points,
              summary.odom.empty() ? "not needed" : summary.odom);
   fmt::print("ego motion: {}\n", summary.motion);
+  if (!summary.check.empty()) fmt::print("{}\n", summary.check);
+  if (counts.jumps > 0) fmt::print("the odometry jumped {} times, and the grid was forgotten\n", counts.jumps);
   if (counts.degenerate > 0) {
     fmt::print("ego motion left open in part by {} clouds, and predicted there: their labels are less sure\n",
                counts.degenerate);
@@ -100,6 +103,23 @@ void keepSummary(const fs::path& file, const LabelBagSummary& summary, const Con
                                jsonNumber(score.precision()), jsonNumber(score.recall()), toJson(prediction)));
 }
 
+/// What the clouds say of the odometry; writes nothing.
+void checkOdometry(const CLI::App& app, const Arguments& arguments, const LabelBagOptions& options) {
+  std::optional<ProgressBar> progress;
+  const BagParts in(arguments.files.begin(), arguments.files.end());
+  const auto ignore = [](const LabeledScan&, const ros::Time&, std::size_t) {};
+  const auto summary = judgeBag(in, options, ignore, [&](std::size_t, std::size_t total) {
+    if (!progress) progress.emplace(total);
+    progress->advance();
+  });
+  progress.reset();
+  for (const std::string& remark : summary.remarks) warn(app, remark);
+  fmt::print("ego motion: {}\n", summary.motion);
+  if (summary.check.empty()) throw DataError("there is neither odometry nor tf to check against the clouds");
+  fmt::print("{}\n", summary.check);
+  for (const std::string& line : summary.calibration) fmt::print("{}\n", line);
+}
+
 void run(const CLI::App& app, const Arguments& arguments, const LabelBagOptions& options) {
   const Files files = filesOf(arguments);
   requireOutputs(arguments, files);
@@ -124,7 +144,8 @@ int main(int argc, char** argv) {
   donex::LabelBagOptions options;
   app.footer(
       "donex_bag IN.bag OUT.bag\n"
-      "donex_bag PART_0.bag PART_1.bag ... --out DIR   (a split recording, labelled as one)");
+      "donex_bag PART_0.bag PART_1.bag ... --out DIR   (a split recording, labelled as one)\n"
+      "donex_bag IN.bag --check-odometry   (writes nothing)");
   app.add_option("BAGS", arguments.files,
                  "IN.bag OUT.bag: everything of IN and its labelled clouds; with --out only what is read")
       ->required()
@@ -137,12 +158,18 @@ int main(int argc, char** argv) {
                  "motion is that of "
                  "the odometry, else of tf, else it is found in the clouds");
   app.add_option("--labeled", options.labeled, "topic of the labelled clouds, by default " + options.labeled);
+  app.add_flag("--check-odometry", arguments.check_odometry,
+               "only say whether the odometry agrees with the clouds, and what they tell of mounting, scale and stamps")
+      ->excludes("--out");
   app.add_option("--summary", arguments.summary, "write counts, times and memory to this file (JSON)");
   const donex::ConfigOptions config(app);
   return donex::runProgram(app, argc, argv, [&] {
     donex::Config defaults;
     defaults.motion.source = donex::OdometrySource::kAuto;
     options.config = config.config(defaults);
+    options.calibrate = arguments.check_odometry;
+    options.config.motion.odometry_check |= arguments.check_odometry;
+    if (arguments.check_odometry) return donex::checkOdometry(app, arguments, options);
     donex::run(app, arguments, options);
   });
 }

@@ -81,6 +81,12 @@ void report(const Run& run, const Config& config, const DriveRun& drive, bool ha
   }
 }
 
+void reportCheck(const DriveRun& drive) {
+  if (drive.check() == nullptr) return;
+  fmt::print("{}\n", summaryOf(drive.check()->finding()));
+  if (drive.jumps() > 0) fmt::print("the poses jumped {} times, and the grid was forgotten\n", drive.jumps());
+}
+
 /// Poses of the scans against those that the sequence comes with.
 void reportOdometry(const SequenceReader& sequence, const DriveRun& drive) {
   constexpr double kPiece = 10.0;  // [m]
@@ -111,6 +117,7 @@ void run(const CLI::App& app, const Arguments& arguments, const ConfigOptions& o
   const Run run = runSequence(sequence, scans, drive, arguments.out);
   report(run, config, drive, sequence.hasLabels());
   reportOdometry(sequence, drive);
+  reportCheck(drive);
   if (!arguments.out.empty()) writeRunFigures(arguments.out, figuresOf(drive, config));
 }
 

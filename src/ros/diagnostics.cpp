@@ -70,6 +70,21 @@ void Diagnostics::dropped(DropReason reason, const std::string& text) {
   last_drop_ = text;
 }
 
+void Diagnostics::odometryChecked(const OdometryFinding& finding) {
+  const std::lock_guard<std::mutex> lock(checked_mutex_);
+  checked_ = finding;
+}
+
+std::optional<OdometryFinding> Diagnostics::checked() const {
+  const std::lock_guard<std::mutex> lock(checked_mutex_);
+  return checked_;
+}
+
+std::string Diagnostics::odometryText() const {
+  const auto found = checked();
+  return found ? describe(*found) : "odometry is not checked against the scans";
+}
+
 void Diagnostics::report(DiagnosticStatusWrapper& status) {
   const auto itself = [](const Clock::time_point& time) { return time; };
   forgetOld(arrivals_, itself);
@@ -79,6 +94,7 @@ void Diagnostics::report(DiagnosticStatusWrapper& status) {
   addLine(status);
   addFigures(status);
   addCounts(status);
+  addCheck(status);
   failures_reported_ = failures_;
 }
 
@@ -93,6 +109,8 @@ Health Diagnostics::health() const {
   health.drops = drops_.size();
   health.last_drop = describe(last_reason_);
   health.waiting = pipeline_.waiting();
+  const auto found = checked();
+  if (found && found->agreement == Agreement::kDisagrees) health.odometry_fault = describe(found->cause);
   if (failures_ != failures_reported_) health.failure = last_failure_;
   return health;
 }
@@ -157,11 +175,23 @@ void Diagnostics::addCounts(DiagnosticStatusWrapper& status) const {
     const auto refusal = static_cast<OdometryRefusal>(i);
     status.add(std::string("odometry refused: ") + describe(refusal), counts.refused.of(refusal));
   }
+  status.add("odometry jumps", counts.jumps);
+  status.add("alarms: what stands became dynamic at once", counts.floods);
+  if (!last_flood_.empty()) status.add("last such alarm", last_flood_);
   status.add("last drop", last_drop_);
   status.add("last echo times not used", last_strange_times_);
+  if (!strange_origin_.empty()) status.add("origin of the clouds", strange_origin_);
   status.add("last odometry refused", last_refusal_);
   status.add("internal errors", failures_);
   status.add("last internal error", last_failure_);
+}
+
+void Diagnostics::addCheck(DiagnosticStatusWrapper& status) const {
+  const auto found = checked();
+  if (!found) return;
+  status.add("odometry against the scans", describe(*found));
+  status.add("windows checked", found->windows);
+  status.add("windows in which odometry and scans disagree", found->harmful);
 }
 
 }  // namespace donex

@@ -12,6 +12,7 @@
 
 #include "donex/memory_bound.h"
 #include "ros/diagnostics.h"
+#include "ros/odometry_monitor.h"
 #include "ros/odometry_publisher.h"
 #include "ros/parameters.h"
 #include "ros/pipeline.h"
@@ -22,6 +23,7 @@ namespace donex {
 namespace {
 
 constexpr double kLogPeriod = 5.0;     // between messages of one kind [s]
+constexpr double kCheckPeriod = 30.0;  // the same of odometry that disagrees with the scans [s]
 constexpr double kRetryPeriod = 0.01;  // waiting clouds are asked about this often at least [s]
 
 /// A queue of roscpp's that is full drops silently. Ours takes whatever comes while one scan is judged; after that scan
@@ -56,6 +58,7 @@ class DonexNode::Implementation {
 
   PipelineEvents events();
   void publish(const LabeledScan& scan);
+  void checkOdometry(const LabeledScan& scan);
 
   /// An exception out of a callback would end the whole manager.
   template <class Function>
@@ -72,6 +75,7 @@ class DonexNode::Implementation {
   Diagnostics diagnostics_;
   ScanPublisher publisher_;
   OdometryPublisher odometry_publisher_;
+  std::unique_ptr<OdometryMonitor> odometry_monitor_;
   std::unique_ptr<Reconfigure> reconfigure_;
   bool work_is_queued_ = false;
   double work_queued_at_ = 0.0;  // [s]
@@ -118,6 +122,7 @@ DonexNode::Implementation::~Implementation() {
   reset_service_.shutdown();
   reconfigure_.reset();
   nh_.getCallbackQueue()->removeByID(queueId());
+  odometry_monitor_.reset();
 }
 
 template <class Function>
@@ -195,6 +200,15 @@ PipelineEvents DonexNode::Implementation::events() {
   };
   events.forgotten = [](const std::string& text) { ROS_WARN_STREAM_NAMED("donex", text); };
   events.motion_chosen = [](const std::string& text) { ROS_INFO_STREAM_NAMED("donex", text); };
+  events.flooded = [this](const std::string& text) {
+    const std::string full = text + ", " + diagnostics_.odometryText();
+    ROS_WARN_STREAM_NAMED("donex", full);
+    diagnostics_.flooded(full);
+  };
+  events.strange_origin = [this](const std::string& text) {
+    ROS_WARN_STREAM_NAMED("donex", text);
+    diagnostics_.strangeOrigin(text);
+  };
   events.strange_times = [this](const std::string& text) {
     ROS_WARN_STREAM_THROTTLE_NAMED(kLogPeriod, "donex", text);
     diagnostics_.strangeTimes(text);
@@ -206,7 +220,27 @@ void DonexNode::Implementation::publish(const LabeledScan& scan) {
   publisher_.publishLabels(scan);
   diagnostics_.scanPublished(scan);
   odometry_publisher_.publish(scan);
+  checkOdometry(scan);
   publisher_.publishTheRest(scan, config_);
+}
+
+/// The thread begins with the first scan whose motion somebody else tells: that of auto is known only then.
+void DonexNode::Implementation::checkOdometry(const LabeledScan& scan) {
+  if (!isChecked(config_.motion, pipeline_.motion().source())) return;
+  if (odometry_monitor_ == nullptr) {
+    const auto tell = [this, was = Agreement::kTooEarly](const OdometryFinding& finding) mutable {
+      const bool is_new = finding.agreement != was;
+      was = finding.agreement;
+      if (finding.agreement == Agreement::kDisagrees) {
+        ROS_WARN_STREAM_THROTTLE_NAMED(kCheckPeriod, "donex", describe(finding));
+      } else if (is_new) {
+        ROS_INFO_STREAM_NAMED("donex", describe(finding));
+      }
+      diagnostics_.odometryChecked(finding);
+    };
+    odometry_monitor_ = std::make_unique<OdometryMonitor>(config_.motion, tell);
+  }
+  odometry_monitor_->add(scan);
 }
 
 DonexNode::DonexNode(const ros::NodeHandle& nh, const ros::NodeHandle& pnh)

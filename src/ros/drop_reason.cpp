@@ -26,6 +26,7 @@ const char* describe(OdometryRefusal refusal) {
     case OdometryRefusal::kDuplicate: return "duplicate stamp";
     case OdometryRefusal::kTooOld: return "too old";
     case OdometryRefusal::kNoFrame: return "no frame";
+    case OdometryRefusal::kStandsStill: return "pose stands still, twist does not";
   }
   return "unknown";
 }

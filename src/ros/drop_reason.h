@@ -32,8 +32,9 @@ enum class OdometryRefusal {
   kDuplicate,
   kTooOld,
   kNoFrame,
+  kStandsStill,  ///< the pose stays where it is while the twist moves
 };
-constexpr std::size_t kOdometryRefusals = 5;
+constexpr std::size_t kOdometryRefusals = 6;
 
 const char* describe(OdometryRefusal refusal);
 

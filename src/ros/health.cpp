@@ -31,6 +31,11 @@ void addOdometry(const Health& health, std::vector<std::string>& problems) {
   }
 }
 
+void addOdometryFault(const Health& health, std::vector<std::string>& problems) {
+  if (health.odometry_fault.empty()) return;
+  problems.push_back("odometry disagrees with the scans (" + health.odometry_fault + ")");
+}
+
 void addDrops(const Health& health, std::vector<std::string>& problems) {
   if (health.drops == 0) return;
   const char* scans = health.drops == 1 ? "scan" : "scans";
@@ -44,6 +49,7 @@ HealthLine tell(const Health& health) {
   std::vector<std::string> problems;
   addSilence(health, problems);
   addOdometry(health, problems);
+  addOdometryFault(health, problems);
   addDrops(health, problems);
   const bool stuck = problems.empty() && health.labeled_rate <= 0.0;
   if (stuck) problems.push_back(textOf("no scan labelled yet, %zu waiting", health.waiting));

@@ -14,6 +14,7 @@ struct Health {
   std::optional<double> silent;  ///< since the newest cloud [s]; empty before the first
   bool needs_odometry = true;
   std::optional<double> odometry_age;  ///< since the newest odometry [s]; empty before the first
+  std::string odometry_fault;          ///< likely cause; empty where odometry and scans agree
   std::size_t drops = 0;               ///< scans
   std::string last_drop;               ///< why, in a few words
   std::size_t waiting = 0;             ///< scans

@@ -94,6 +94,8 @@ MotionSource::MotionSource(const MotionConfig& config, const tf2::BufferCore& tf
 
 void MotionSource::reset() {
   odometry_.reset();
+  pose_and_twist_.reset();
+  ++track_number_;
   scan_odometry_.reset();
   mounting_.reset();
 }
@@ -128,6 +130,7 @@ OdometryVerdict MotionSource::add(const nav_msgs::Odometry& odometry) {
   const auto pose = poseOf(odometry);
   if (pose) {
     sample.odom_from_base = *pose;
+    if (pose_and_twist_.standsStill(sample)) return standingStill(sample);
     return addSample(odometry, sample);
   }
   const bool is_no_rotation = pose.fault() == MotionFault::kNonUnitQuaternion;
@@ -135,9 +138,18 @@ OdometryVerdict MotionSource::add(const nav_msgs::Odometry& odometry) {
                     textOf("odometry of ", stamp, " s: ", describe(pose.fault())));
 }
 
+OdometryVerdict MotionSource::standingStill(const OdometrySample& sample) const {
+  return refusedFor(OdometryRefusal::kStandsStill,
+                    textOf("odometry of ", sample.stamp, " s: its pose has not changed for ", pose_and_twist_.time(),
+                           " s while its twist led ", pose_and_twist_.way(),
+                           " m away; where nobody fills in the pose, set odometry_source: twist"));
+}
+
 OdometryVerdict MotionSource::addSample(const nav_msgs::Odometry& odometry, const OdometrySample& sample) {
   const bool frames_changed = adoptFrames(odometry);
   OdometryVerdict verdict = verdictOn(odometry_.add(sample), sample.stamp);
+  const bool is_new_track = frames_changed || verdict.kind == OdometryVerdict::Kind::kNewTrack;
+  if (is_new_track) ++track_number_;
   if (!frames_changed) return verdict;
   return {
       OdometryVerdict::Kind::kNewTrack, {}, textOf("odometry now moves '", base_frame_, "' in '", odom_frame_, "'")};
@@ -249,6 +261,7 @@ MotionAnswer MotionSource::fromOdometry(const ScanTimes& times, const std::strin
   motion.odom_frame = odom_frame_;
   motion.base_frame = base_frame_;
   if (times.spanTime()) motion.track = &odometry_;
+  addMidway(times, odometry_, motion);
   return motion;
 }
 
@@ -264,7 +277,15 @@ MotionAnswer MotionSource::fromTf(const ScanTimes& times, const std::string& sen
   motion.odom_frame = frameName(config_.fixed_frame);
   motion.base_frame = frameName(config_.base_frame);
   if (times.spanTime()) motion.track = &tf_track_;
+  addMidway(times, tf_track_, motion);
   return motion;
+}
+
+void MotionSource::addMidway(const ScanTimes& times, const EgoMotion& track, ScanMotion& motion) const {
+  const double stamp = times.stamp.toSec(), middle = stamp + 0.5 * (times.first + times.last);
+  const auto pose = track.poseAt(middle);
+  motion.midway = pose ? ScanMotion::Sample{middle, *pose} : ScanMotion::Sample{stamp, motion.odom_from_base};
+  motion.track_number = track_number_;
 }
 
 std::optional<MotionMissing> MotionSource::trackFromTf(const ScanTimes& times) {

@@ -10,6 +10,7 @@
 #include <ros/time.h>
 #include <tf2/buffer_core.h>
 
+#include "core/motion/pose_and_twist.h"
 #include "donex/config.h"
 #include "donex/motion/ego_motion.h"
 #include "ros/drop_reason.h"
@@ -45,6 +46,15 @@ struct ScanMotion {
   std::string odom_frame, base_frame;
   /// Covers the scan's times, to de-skew by; null where there is nothing to undo. Valid until the source's next call.
   const EgoMotion* track = nullptr;
+  /// The vehicle in the middle of the scan, which tells of all its echoes.
+  struct Sample {
+    double stamp = 0.0;  ///< [s]
+    Eigen::Isometry3d odom_from_base = Eigen::Isometry3d::Identity();
+  };
+  Sample midway;
+  /// Where the cloud is told in another frame than its sensor's.
+  std::optional<Eigen::Isometry3d> sensor_from_cloud;
+  std::size_t track_number = 0;  ///< poses of another one cannot be compared
   /// Where the motion was found in the clouds: how well, and the velocity since the scan before.
   std::optional<TrackedScan> tracked;
   Twist twist;
@@ -94,6 +104,8 @@ class MotionSource {
   std::optional<MotionMissing> mount(const ScanTimes& times, const std::string& sensor_frame, bool settle);
   MotionAnswer fromTf(const ScanTimes& times, const std::string& sensor_frame);
   std::optional<MotionMissing> trackFromTf(const ScanTimes& times);
+  void addMidway(const ScanTimes& times, const EgoMotion& track, ScanMotion& motion) const;
+  OdometryVerdict standingStill(const OdometrySample& sample) const;
   OdometryVerdict addSample(const nav_msgs::Odometry& odometry, const OdometrySample& sample);
   std::variant<Eigen::Isometry3d, MotionMissing> lookup(const std::string& target, const std::string& source,
                                                         const ros::Time& stamp) const;
@@ -104,6 +116,8 @@ class MotionSource {
   std::string choice_;
   const tf2::BufferCore& tf_;
   EgoMotion odometry_;
+  PoseAndTwist pose_and_twist_;
+  std::size_t track_number_ = 0;
   EgoMotion tf_track_;  // of one scan
   ScanOdometry scan_odometry_;
   std::optional<Eigen::Isometry3d> mounting_;  // with kLidar; it stays

@@ -25,7 +25,11 @@ Pipeline::Pipeline(const Config& config, const tf2::BufferCore& tf, PipelineEven
 
 Pipeline::Pipeline(const Config& config, const tf2::BufferCore& tf, PipelineEvents events,
                    std::shared_ptr<Detector> detector)
-    : config_(config), events_(std::move(events)), motion_(config.motion, tf), detector_(std::move(detector)) {}
+    : config_(config),
+      events_(std::move(events)),
+      motion_(config.motion, tf),
+      placer_(config, tf),
+      detector_(std::move(detector)) {}
 
 void Pipeline::addCloud(const sensor_msgs::PointCloud2ConstPtr& cloud, double now) {
   ++counts_.clouds_in;
@@ -106,6 +110,7 @@ void Pipeline::startAnew(const std::string& why) {
     drop(DropReason::kTimeRanBack, cloudOf(waiting.cloud->header.stamp) + " was waiting when time ran back");
   }
   motion_.reset();
+  placer_.reset();
   reset();
   last_labeled_.reset();
   events_.forgotten("time ran back (" + why + "): buffers and grid are cleared");
@@ -142,10 +147,14 @@ MotionAnswer Pipeline::motionOf(const WaitingCloud& waiting, bool settle) {
   try {
     parse(waiting);
     const bool was_known = motion_.source() != OdometrySource::kAuto;
-    auto motion = motion_.during({header.stamp, times_.first, times_.last}, header.frame_id, settle, scan_.echoes);
+    const std::string frame = placer_.movingFrame(header.frame_id, motion_.source());
+    auto motion = motion_.during({header.stamp, times_.first, times_.last}, frame, settle, scan_.echoes);
     const bool is_chosen = !was_known && motion_.source() != OdometrySource::kAuto;
     if (is_chosen && events_.motion_chosen) events_.motion_chosen(motion_.choice());
-    return motion;
+    auto* known = std::get_if<ScanMotion>(&motion);
+    if (known == nullptr) return motion;
+    const auto nowhere = placer_.place(header.stamp, header.frame_id, motion_.source(), *known);
+    return nowhere ? MotionAnswer(*nowhere) : motion;
   } catch (const std::exception& error) {
     // ros::Time throws where a time of the scan lies before 1970.
     return MotionMissing{DropReason::kInternalError, error.what(), false};
@@ -171,6 +180,8 @@ void Pipeline::label(const WaitingCloud& waiting, const ScanMotion& motion) {
   scan_.stamp = stamp.toSec();
   scan_.base_from_sensor = motion.base_from_sensor;
   scan_.odom_from_base = motion.odom_from_base;
+  suspectOrigin(motion, waiting.cloud->header.frame_id);
+  if (motion.sensor_from_cloud) moveEchoes(*motion.sensor_from_cloud, scan_.echoes);
   if (motion.track != nullptr) {
     const MotionFault fault =
         deskew(*motion.track, scan_.stamp, scan_.base_from_sensor, times_.after_stamp, scan_.echoes);
@@ -178,7 +189,9 @@ void Pipeline::label(const WaitingCloud& waiting, const ScanMotion& motion) {
   }
   moveToOrigin();
   followTrack(motion);
+  followOdometry(motion);
   detector_->process(scan_, labels_);
+  watchFlood();
   motion_.learn(labels_.dynamic);
   last_labeled_ = stamp;
   events_.labeled({waiting.cloud, waiting.layout, scan_, labels_, *detector_, motion.odom_frame, motion,
@@ -196,6 +209,20 @@ void Pipeline::followTrack(const ScanMotion& motion) {
   events_.forgotten("the ego motion was lost, and is found anew in the clouds: the grid is forgotten");
 }
 
+/// What the grid remembers lies elsewhere after a jump: all of it would look new.
+void Pipeline::followOdometry(const ScanMotion& motion) {
+  const bool is_told = config_.motion.odometry_check && !motion.tracked && motion_.source() != OdometrySource::kNone;
+  if (!is_told) return;
+  if (motion.track_number != track_number_) jump_.reset();
+  track_number_ = motion.track_number;
+  const double jump = jump_.follow(scan_.stamp, scan_.odom_from_base);
+  if (!(jump > 0.0)) return;
+  ++counts_.jumps;
+  reset();
+  events_.forgotten("the odometry jumped by " + std::to_string(jump).substr(0, 4) + " m before the " +
+                    cloudOf(ros::Time(scan_.stamp)) + ": the grid is forgotten");
+}
+
 bool Pipeline::deskews() const { return config_.motion.deskew && config_.motion.source != OdometrySource::kNone; }
 
 void Pipeline::tellStrangeTimes(const WaitingCloud& waiting) {
@@ -207,6 +234,33 @@ void Pipeline::tellStrangeTimes(const WaitingCloud& waiting) {
   } else if (!times_.problem.empty()) {
     events_.strange_times(times_.problem);
   }
+}
+
+/// A cloud that somebody has moved into the vehicle's frame does not say where its sensor is.
+void Pipeline::suspectOrigin(const ScanMotion& motion, const std::string& cloud_frame) {
+  constexpr int kCertain = 5;  // clouds in a row
+  const CloudConfig& cloud = config_.cloud;
+  const bool is_told =
+      motion.sensor_from_cloud || Eigen::Vector3d(cloud.origin_x, cloud.origin_y, cloud.origin_z).norm() > 0.0;
+  const bool is_vehicle = motion.base_from_sensor.isApprox(Eigen::Isometry3d::Identity()) && !motion.tracked;
+  if (is_told || !is_vehicle || on_the_ground_ >= kCertain) return;
+  on_the_ground_ = liesOnTheGround(scan_.echoes) ? on_the_ground_ + 1 : 0;
+  if (on_the_ground_ < kCertain || !events_.strange_origin) return;
+  events_.strange_origin("the clouds are told in the vehicle's frame '" + cloud_frame +
+                         "', and its origin lies on the ground, where no sensor is: set sensor_frame, or origin_x, "
+                         "origin_y and origin_z, to where it is");
+}
+
+void Pipeline::watchFlood() {
+  const double share = flood_.follow(labels_);
+  if (!(share > 0.0)) return;
+  ++counts_.floods;
+  if (!events_.flooded) return;
+  const std::string times = !times_.problem.empty() ? times_.problem : times_.empty() ? "none used" : "used";
+  events_.flooded(std::to_string(static_cast<int>(100.0 * share)) + " % of the judged echoes of the " +
+                  cloudOf(ros::Time(scan_.stamp)) +
+                  " became dynamic at once, which is never the world; checked: jumps of the odometry (" +
+                  std::to_string(counts_.jumps) + "), times of the echoes (" + times + ")");
 }
 
 /// Lines of sight begin in the origin of the scan's frame: in a merged cloud that is not where the sensor is.
@@ -224,7 +278,10 @@ void Pipeline::finish() {
   dropSuspect();
 }
 
-void Pipeline::reset() { detector_->reset(); }
+void Pipeline::reset() {
+  detector_->reset();
+  flood_.reset();
+}
 
 void Pipeline::watchCells(bool watched) {
   if (watched == watched_) return;

@@ -12,9 +12,12 @@
 #include <sensor_msgs/PointCloud2.h>
 #include <tf2/buffer_core.h>
 
+#include "core/motion/odometry_jump.h"
 #include "donex/detector.h"
+#include "ros/cloud_placer.h"
 #include "ros/conversions.h"
 #include "ros/drop_reason.h"
+#include "ros/flood_watch.h"
 #include "ros/motion_source.h"
 
 namespace donex {
@@ -41,6 +44,10 @@ struct PipelineEvents {
   std::function<void(const std::string& text)> strange_times;             ///< once per cloud that cannot be de-skewed
   /// Where the ego motion comes from, once odometry_source auto knows; may be left empty.
   std::function<void(const std::string& text)> motion_chosen = nullptr;
+  /// Once, where the clouds look as if their sensor were elsewhere; may be left empty.
+  std::function<void(const std::string& text)> strange_origin = nullptr;
+  /// A large share of what stands has become dynamic at once, and what was checked; may be left empty.
+  std::function<void(const std::string& text)> flooded = nullptr;
 };
 
 struct PipelineCounts {
@@ -48,6 +55,8 @@ struct PipelineCounts {
   std::size_t odometry_in = 0;
   DropCounts dropped;
   OdometryRefusalCounts refused;
+  std::size_t floods = 0;      ///< alarms: what stands became dynamic at once
+  std::size_t jumps = 0;       ///< of the odometry; each forgets the grid
   std::size_t degenerate = 0;  ///< labelled with an ego motion from the clouds that they leave open in part
 };
 
@@ -104,7 +113,10 @@ class Pipeline {
   void suspect(const nav_msgs::Odometry& odometry);
   void use(const nav_msgs::Odometry& odometry);
   void dropSuspect();
+  void watchFlood();
+  void suspectOrigin(const ScanMotion& motion, const std::string& cloud_frame);
   void followTrack(const ScanMotion& motion);
+  void followOdometry(const ScanMotion& motion);
   void startAnew(const std::string& why);
   MotionAnswer motionOf(const WaitingCloud& waiting, bool settle);
   void label(const WaitingCloud& waiting, const ScanMotion& motion);
@@ -115,6 +127,11 @@ class Pipeline {
   Config config_;
   PipelineEvents events_;
   MotionSource motion_;
+  CloudPlacer placer_;
+  OdometryJump jump_;
+  FloodWatch flood_;
+  std::size_t track_number_ = 0;
+  int on_the_ground_ = 0;  // clouds in a row whose origin lies there
   std::shared_ptr<Detector> detector_;
   bool watched_ = false;
   PipelineCounts counts_;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "bag/bags.h"
+#include "bag/simulation_bag.h"
 #include "programs/command.h"
 
 namespace donex {
@@ -44,6 +45,32 @@ TEST(BagProgram, aForgottenOutputFolderReplacesNoRecording) {
   expectRefused(" p_0.bag new.bag --summary p_1.bag", "p_1.bag: is there already; --overwrite replaces it");
   expectRefused(" p_0.bag new.bag --summary new.bag",
                 "new.bag: two outputs have this name, one would overwrite the other");
+}
+
+TEST(BagProgram, ChecksTheOdometryAndWritesNothing) {
+  const test::TemporaryDirectory directory;
+  simulation::SimulatorOptions options;
+  options.beams = 16;
+  options.duration = 3.0;
+  options.start_stamp = 5.0;
+  options.odometry.drift = 0.08;
+  simulation::Simulator simulator("street", options);
+  const auto file = directory.path() / "drive.bag";
+  writeSimulationBag(simulator, file, rosbag::compression::Uncompressed, [] {});
+  const std::string before = test::readText(file);
+  const std::string program = std::string(DONEX_BAG) + " " + file.string() + " --check-odometry";
+  const test::Outcome outcome = test::runCommand(program);
+  EXPECT_EQ(outcome.code, 0) << outcome.text;
+  for (const char* words :
+       {"odometry disagrees with the scans in", "likely cause: its scale", "\nmounting: ", "\nscale: ", "\nstamps: "}) {
+    EXPECT_NE(outcome.text.find(words), std::string::npos) << words << "\n" << outcome.text;
+  }
+  const auto files = std::distance(fs::directory_iterator(directory.path()), fs::directory_iterator());
+  EXPECT_EQ(files, 1);
+  EXPECT_EQ(test::readText(file), before);
+  const test::Outcome clouds_alone = test::runCommand(program + " --set odometry_source=lidar");
+  EXPECT_EQ(clouds_alone.code, 1) << clouds_alone.text;
+  EXPECT_NE(clouds_alone.text.find("neither odometry nor tf to check"), std::string::npos) << clouds_alone.text;
 }
 
 }  // namespace

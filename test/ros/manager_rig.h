@@ -35,7 +35,7 @@ inline bool waitFor(const std::function<bool()>& condition, double seconds = kHa
   return ros::ok();
 }
 
-class ManagerTest : public testing::Test {
+class ManagerTest : public ::testing::Test {
  protected:
   ManagerTest() : manager_(false), nh_(uniqueNamespace()) {
     clouds_ = nh_.advertise<sensor_msgs::PointCloud2>("points", 200);

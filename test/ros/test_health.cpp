@@ -36,6 +36,8 @@ TEST(Health, SaysWhatAnEngineerUnderstands) {
          health.drops = 1;
          health.last_drop = "queue full";
        }},
+      {"WARN: odometry disagrees with the scans (its scale, 1.050 times the true lengths)", Level::kWarn,
+       [](Health& health) { health.odometry_fault = "its scale, 1.050 times the true lengths"; }},
       {"WARN: no clouds for 3.0 s", Level::kWarn, [](Health& health) { health.silent = 3.0; }},
       {"WARN: no clouds yet, no odometry yet", Level::kWarn, [](Health& health) { health = Health(); }},
       {"OK: 9.9 Hz, 11 ms a scan", Level::kOk,

@@ -277,5 +277,94 @@ TEST(PipelineFaults, EveryCloudIsAccountedForUnderRandomFaults) {
   EXPECT_GT(counts.clouds_labeled, 2000U);
 }
 
+TEST(PipelineFaults, OdometryThatJumpsForgetsTheGridOnce) {
+  PipelineRig rig;
+  for (int i = 0; i < 10; ++i) {
+    const double stamp = 100.0 + 0.1 * i;
+    auto odometry = test::odometryAt(stamp, 3.0);
+    if (i >= 5) odometry.pose.pose.position.y = 0.5;
+    rig.pipeline.addOdometry(odometry);
+    rig.cloud(stamp);
+    rig.run(stamp);
+  }
+  EXPECT_EQ(rig.labeled.size(), 10U);
+  EXPECT_EQ(rig.pipeline.counts().jumps, 1U);
+  ASSERT_EQ(rig.forgotten.size(), 1U);
+  EXPECT_NE(rig.forgotten[0].find("jumped by 0.50 m"), std::string::npos) << rig.forgotten[0];
+}
+
+TEST(PipelineFaults, JumpsAreLeftAloneWithoutTheCheck) {
+  Config config = test::smallConfig();
+  config.motion.odometry_check = false;
+  PipelineRig rig(config);
+  for (int i = 0; i < 10; ++i) {
+    const double stamp = 100.0 + 0.1 * i;
+    rig.pipeline.addOdometry(test::odometryAt(stamp, i < 5 ? 3.0 : 9.0));
+    rig.cloud(stamp);
+    rig.run(stamp);
+  }
+  EXPECT_EQ(rig.pipeline.counts().jumps, 0U);
+  EXPECT_TRUE(rig.forgotten.empty());
+}
+
+TEST(PipelineFaults, APoseThatNobodyFillsInIsRefusedWithWhatToSet) {
+  PipelineRig rig;
+  for (int i = 0; i < 20; ++i) {
+    auto odometry = test::odometryAt(100.0 + 0.05 * i);
+    odometry.twist.twist.linear.x = 10.0;
+    rig.pipeline.addOdometry(odometry);
+  }
+  EXPECT_EQ(rig.refused(OdometryRefusal::kStandsStill), 13U) << "from 0.35 s on";
+  ASSERT_FALSE(rig.refusals.empty());
+  EXPECT_NE(rig.refusals.back().find("set odometry_source: twist"), std::string::npos) << rig.refusals.back();
+}
+
+EchoLabels labelsWith(std::size_t dynamic) {
+  EchoLabels labels;
+  labels.assign(1000);
+  labels.observed.assign(1000, 1);
+  std::fill_n(labels.dynamic.begin(), dynamic, 1);
+  return labels;
+}
+
+TEST(FloodWatch, TellsASuddenFloodOnce) {
+  FloodWatch watch;
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(watch.follow(labelsWith(20)), 0.0) << i;
+  EXPECT_EQ(watch.follow(labelsWith(400)), 0.0) << "one scan";
+  EXPECT_EQ(watch.follow(labelsWith(400)), 0.4) << "two";
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(watch.follow(labelsWith(400)), 0.0) << i;
+}
+
+TEST(FloodWatch, IsNoCrowdAndNoStart) {
+  FloodWatch crowd, start;
+  for (int i = 0; i < 40; ++i) EXPECT_EQ(crowd.follow(labelsWith(static_cast<std::size_t>(10 * i))), 0.0) << i;
+  for (int i = 0; i < 40; ++i) EXPECT_EQ(start.follow(labelsWith(400)), 0.0) << i;
+}
+
+TEST(PipelineFaults, WhatStandsAndIsDynamicAtOnceIsSaid) {
+  std::vector<std::string> said;
+  PipelineEvents events;
+  events.labeled = [](const LabeledScan&) {};
+  events.dropped = [](DropReason, const std::string& text) { ADD_FAILURE() << text; };
+  events.refused = [](OdometryRefusal, const std::string& text) { ADD_FAILURE() << text; };
+  events.forgotten = events.strange_times = [](const std::string&) {};
+  events.flooded = [&](const std::string& text) { said.push_back(text); };
+  tf2::BufferCore tf;
+  Config config = paperConfig(Method::kDonex3d);
+  config.region = test::smallConfig().region;
+  config.motion.source = OdometrySource::kNone;
+  Pipeline pipeline(config, tf, events);
+  for (int i = 0; i < 30; ++i) {
+    // From scan 25 on all of it is elsewhere in every scan: whatever the reason, it is not the world.
+    const float radius = i < 25 ? 10.0F : 10.0F - 0.6F * static_cast<float>(i - 24);
+    const double stamp = 100.0 + 0.1 * i;
+    pipeline.addCloud(test::plainCloud(test::ring(1000, radius), stamp), stamp);
+    pipeline.step(stamp);
+  }
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_NE(said[0].find("checked: jumps of the odometry (0)"), std::string::npos) << said[0];
+  EXPECT_EQ(pipeline.counts().floods, 1U);
+}
+
 }  // namespace
 }  // namespace donex
