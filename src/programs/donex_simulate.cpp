@@ -3,12 +3,12 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "donex/motion/ego_motion.h"
 #include "io/number_text.h"
 #include "io/outputs.h"
 #include "io/sequence.h"
+#include "programs/option_adder.h"
 #include "programs/program.h"
 #include "simulation/simulator.h"
 #ifdef DONEX_WITH_BAGS
@@ -20,7 +20,6 @@ namespace donex {
 namespace {
 
 using simulation::OdometryOptions;
-using simulation::OptionInfo;
 using simulation::SimulatedScan;
 using simulation::Simulator;
 using simulation::SimulatorOptions;
@@ -31,29 +30,6 @@ struct Arguments {
   std::string compression = "none";
   bool overwrite = false;
   SimulatorOptions options;
-};
-
-/// Adds every option of the simulator by its name.
-struct OptionAdder {
-  CLI::App& app;
-
-  template <class Number>
-  void operator()(const OptionInfo& info, Number& value, Number, Number) {
-    const std::string unit = *info.unit == '\0' ? "" : fmt::format(" [{}]", info.unit);
-    app.add_option(flagOf(info), value, fmt::format("{}{}; by default {}", info.meaning, unit, numberText(value)));
-  }
-  void operator()(const OptionInfo& info, std::string& value, const std::vector<std::string>& names) {
-    app.add_option(flagOf(info), value,
-                   fmt::format("{}: {}; by default {}", info.meaning, fmt::join(names, ", "), value))
-        ->check(CLI::IsMember(names));
-  }
-  void operator()(const OptionInfo& info, bool& value) { app.add_flag(flagOf(info), value, info.meaning); }
-
-  static std::string flagOf(const OptionInfo& info) {
-    std::string flag = std::string("--") + info.name;
-    std::replace(flag.begin(), flag.end(), '_', '-');
-    return flag;
-  }
 };
 
 std::string listOfPatterns() {

@@ -32,6 +32,10 @@ constexpr std::array kScenes{
     Entry{"slope", "over a hill of 7 to 11 %", makeSlope},
     Entry{"turning", "round and round at 30 degrees a second", makeTurning},
     Entry{"standstill_start", "stands at a traffic light, then starts", makeStandstillStart},
+    Entry{"queue", "two queues that creep at 1 m/s, stop and start, the ego vehicle in one of them", makeQueue},
+    Entry{"doors", "doors of parked cars open on both sides", makeDoors},
+    Entry{"far_people", "people on foot 25 to 48 m away: few echoes each", makeFarPeople},
+    Entry{"corners", "people, cyclists and cars come out from behind walls", makeCorners},
     Entry{"empty_room", "a room at rest, seen by a 16-beam sensor: nothing moves", makeEmptyRoom},
 };
 

@@ -21,6 +21,10 @@ Scene makeBridges(std::uint64_t seed);
 Scene makeSlope(std::uint64_t seed);
 Scene makeTurning(std::uint64_t seed);
 Scene makeStandstillStart(std::uint64_t seed);
+Scene makeQueue(std::uint64_t seed);
+Scene makeDoors(std::uint64_t seed);
+Scene makeFarPeople(std::uint64_t seed);
+Scene makeCorners(std::uint64_t seed);
 Scene makeEmptyRoom(std::uint64_t seed);
 
 }  // namespace donex::simulation

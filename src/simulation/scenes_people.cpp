@@ -1,4 +1,5 @@
 // The hard cases about people on foot.
+#include "core/pi.h"
 #include "simulation/roadside.h"
 #include "simulation/scenes.h"
 
@@ -67,6 +68,62 @@ Scene makeCrowd(std::uint64_t seed) {
     builder.addClear(makeCyclist(random), course, 20.0);
   }
   addCrossings(builder, *path, 12);
+  return std::move(builder.scene());
+}
+
+Scene makeFarPeople(std::uint64_t seed) {
+  constexpr double kNearest = 25.0, kFarthest = 48.0;  // [m] beside the way
+  SceneBuilder builder({}, seed);
+  Random& random = builder.random();
+  const auto path = std::make_shared<const Path>(Path({0.0, 0.0}, random.uniform(-3.1, 3.1)).line(300.0).wrap());
+  builder.ground().add({*path, 5.3});
+  builder.ego(onRightLane(path, random.uniform(80.0, 120.0), SpeedProfile(3.0)));
+  for (double s = 0.0; s < path->length(); s += random.uniform(9.0, 16.0)) {
+    const double side = random.chance(0.5) ? 1.0 : -1.0;
+    const Eigen::Vector2d place = path->at(s, side * random.uniform(kNearest, kFarthest)).position;
+    random.chance(0.5) ? builder.tree(place) : builder.pole(place, 3.0, 0.1);
+  }
+  Course course;
+  course.path = path;
+  for (int i = 0; i < 90; ++i) {
+    const double side = random.chance(0.5) ? 1.0 : -1.0;
+    course.backwards = random.chance(0.5);
+    course.lateral = side * random.uniform(kNearest, kFarthest);
+    course.speed = SpeedProfile(random.uniform(0.8, 1.8));
+    builder.addClear(makePerson(random), course, 30.0);
+  }
+  return std::move(builder.scene());
+}
+
+Scene makeCorners(std::uint64_t seed) {
+  constexpr double kApart = 12.0, kHidden = 10.0, kCorner = 5.5, kRoad = 3.7;  // [m]
+  constexpr double kRamp = 0.5;                                                // [s]
+  SceneBuilder builder({}, seed);
+  Random& random = builder.random();
+  const auto path = std::make_shared<const Path>(Path({0.0, 0.0}, random.uniform(-3.1, 3.1)).line(360.0).wrap());
+  builder.ground().add({*path, 5.3});
+  const double start = random.uniform(20.0, 40.0);
+  constexpr double kSpeed = 5.0;  // [m/s]
+  builder.ego(onRightLane(path, start, SpeedProfile(kSpeed)));
+  for (int i = 0; i < 24; ++i) {
+    const double s = start + 14.0 + kApart * i;
+    const double side = i % 2 == 0 ? 1.0 : -1.0;
+    builder.wall(path->at(s, side * kCorner).position, path->at(s, side * 16.0).position, 2.8);
+    // Seen only once it has passed the corner, two or three seconds before the ego vehicle is there; stops at the road.
+    const bool walks = random.chance(0.6);
+    const double speed = walks ? random.uniform(1.2, 1.8) : random.uniform(2.5, 4.0);
+    const double to_the_corner = (kHidden - kCorner) / speed;
+    const double when = (s - start) / kSpeed - random.uniform(2.2, 3.2) - to_the_corner;
+    const double walking = (kHidden - kRoad) / speed - kRamp;
+    const PathPoint hidden = path->at(s + 1.5, side * kHidden);
+    Course course;
+    course.path = std::make_shared<const Path>(Path(hidden.position, hidden.yaw - side * 0.5 * kPi).line(60.0));
+    course.speed = SpeedProfile({{when, 0.0},
+                                 {when + kRamp, speed},
+                                 {when + kRamp + walking, speed},
+                                 {when + 2.0 * kRamp + walking, 0.0}});
+    builder.add(walks ? makePerson(random) : makeCyclist(random), course);
+  }
   return std::move(builder.scene());
 }
 

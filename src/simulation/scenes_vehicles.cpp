@@ -1,4 +1,5 @@
 // The hard cases whose difficulty is how a vehicle moves.
+#include "core/pi.h"
 #include "simulation/roadside.h"
 #include "simulation/scenes.h"
 
@@ -37,7 +38,83 @@ Course pullingOut(const SharedPath& path, double place, double when, bool other_
   return course;
 }
 
+/// The left door of a car that is parked to the right of the path, or the other way round: a metre long, hinged in
+/// front. It opens by 63 degrees.
+void addDoor(SceneBuilder& builder, const Path& path, double place, bool other_side, double when) {
+  constexpr double kHalfCar = 0.92, kHalfDoor = 0.5;  // [m]
+  const double parking = other_side ? kParking : -kParking;
+  const PathPoint closed = path.at(place, parking + (other_side ? -kHalfCar : kHalfCar));
+  builder.parked(path.at(place, parking), makeCar(builder.random()));
+  Model door;
+  Shape shape;
+  shape.center = {0.0F, 0.0F, 0.8F};
+  shape.half = {0.03F, 0.5F, 0.5F};
+  door.parts.push_back({shape, 0.4F});
+  const double outwards = closed.yaw + (other_side ? -0.5 : 0.5) * kPi;
+  Course course;
+  course.path =
+      std::make_shared<const Path>(Path(closed.position, outwards).arc(kHalfDoor, other_side ? 1.1 : -1.1));
+  course.speed = SpeedProfile({{when, 0.0}, {when + 0.3, 0.5}, {when + 1.1, 0.5}, {when + 1.4, 0.0}});
+  builder.add(door, course);
+}
+
 }  // namespace
+
+Scene makeQueue(std::uint64_t seed) {
+  constexpr int kAhead = 5, kBehind = 2, kOncoming = 9;
+  SceneBuilder builder({}, seed);
+  Random& random = builder.random();
+  const SharedPath path = addTownRoad(builder, 220.0);
+  const auto creeping = [](double delay) {
+    return SpeedProfile({{delay, 1.0}, {delay + 2.5, 1.0}, {delay + 3.5, 0.0}, {delay + 6.0, 0.0}, {delay + 7.5, 1.0}})
+        .repeat();
+  };
+  const double start = random.uniform(40.0, 80.0);
+  builder.ego(onRightLane(path, start, creeping(0.0)));
+  for (int i = -kBehind; i <= kAhead; ++i) {
+    const double gap = random.uniform(0.0, 0.6);
+    const bool is_ego = i == 0;
+    if (!is_ego) builder.add(makeCar(random), onRightLane(path, start + 7.5 * i + gap, creeping(-0.3 * i)));
+  }
+  Course oncoming;
+  oncoming.path = path;
+  oncoming.backwards = true;
+  oncoming.lateral = kLane;
+  const double phase = random.uniform(1.0, 6.0);
+  for (int i = 0; i < kOncoming; ++i) {
+    oncoming.start = start - 15.0 + 7.5 * i + random.uniform(0.0, 0.6);
+    oncoming.speed = creeping(phase - 0.3 * i);
+    builder.add(makeCar(random), oncoming);
+  }
+  Traffic people;
+  people.walkers = 20;
+  populate(builder, path, people);
+  return std::move(builder.scene());
+}
+
+Scene makeDoors(std::uint64_t seed) {
+  constexpr int kDoors = 8;
+  constexpr double kSpeed = 3.0, kApart = 9.0, kRoom = 4.0;  // [m/s], [m], [m]
+  SceneBuilder builder({}, seed);
+  Random& random = builder.random();
+  const double start = random.uniform(10.0, 40.0);
+  Roadside roadside;
+  std::vector<double> places;
+  for (int i = 0; i < kDoors; ++i) {
+    places.push_back(start + 10.0 + kApart * i);
+    for (const double away : {-kRoom, 0.0, kRoom}) roadside.no_parking.push_back(places.back() + away);
+  }
+  const SharedPath path = addTownRoad(builder, 220.0, roadside);
+  builder.ego(onRightLane(path, start, SpeedProfile(kSpeed)));
+  for (int i = 0; i < kDoors; ++i) {
+    const double passes = (places[static_cast<std::size_t>(i)] - start) / kSpeed;
+    addDoor(builder, *path, places[static_cast<std::size_t>(i)], i % 2 != 0, passes - random.uniform(1.5, 2.8));
+  }
+  Traffic people;
+  people.walkers = 10;
+  populate(builder, path, people);
+  return std::move(builder.scene());
+}
 
 Scene makeLeadVehicle(std::uint64_t seed) {
   SceneBuilder builder({}, seed);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "simulation/disturbance.h"
 #include "simulation/odometry_error.h"
 #include "simulation/scan_pattern.h"
 #include "simulation/scene.h"
@@ -135,6 +136,8 @@ bool Simulator::next(SimulatedScan& scan) {
   scan.base_from_sensor = state.scene.ego.base_from_sensor;
   if (state.pattern) state.pattern->aim(state.next_scan, state.sensor);
   state.sweep.measure(time, state.next_scan, scan.echoes, scan.labels);
+  const Disturbance disturbance(state.options.disturbance, static_cast<std::uint64_t>(state.options.seed));
+  disturbance.apply(state.next_scan, scan.echoes, scan.labels);
   state.report(time, scan.odometry);
   ++state.next_scan;
   return true;

@@ -8,16 +8,10 @@
 
 #include "donex/motion/ego_motion.h"
 #include "donex/scan.h"
+#include "simulation/simulated_echo.h"
 #include "simulation/simulator_options.h"
 
 namespace donex::simulation {
-
-struct SimulatedEcho {
-  Eigen::Vector3f position;  ///< sensor frame at the echo's own time [m]
-  float intensity = 0.0f;    ///< 0 to 1
-  float time = 0.0f;         ///< after the scan's stamp [s]: negative with distortion, 0 without
-  std::uint16_t ring = 0;    ///< 0 is the lowest beam; a laser of a non-repetitive pattern
-};
 
 /// One turn of the sensor; it is complete at `stamp`.
 struct SimulatedScan {

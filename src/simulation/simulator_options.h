@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "simulation/disturbance.h"
 #include "simulation/scan_pattern.h"
 
 namespace donex::simulation {
@@ -43,6 +44,7 @@ struct SimulatorOptions {
   double range_noise = 0.015;  // [m]
   double dropout = 0.01;
   double max_range = 120.0;  // [m]
+  DisturbanceOptions disturbance;
   OdometryOptions odometry;
 
   /// Every fault, one sentence each; empty when the options can be used.
@@ -87,6 +89,7 @@ void visitOptions(Options& options, Visitor&& visit) {
   visit(OptionInfo{"range_noise", "m", "along the ray, standard deviation"}, options.range_noise, 0.0, 1.0);
   visit(OptionInfo{"dropout", "", "fraction of the echoes that are lost without a reason"}, options.dropout, 0.0, 1.0);
   visit(OptionInfo{"max_range", "m", "no echo comes from further away"}, options.max_range, 5.0, 300.0);
+  visitDisturbances<OptionInfo>(options.disturbance, visit);
 
   auto& odometry = options.odometry;
   visit(OptionInfo{"odometry_rate", "Hz", "odometry samples a second"}, odometry.rate, 1.0, 1000.0);

@@ -17,7 +17,7 @@ from sensor_msgs.msg import PointCloud2
 
 INSTALL_SPACE = pathlib.Path(sys.argv.pop()).resolve()
 PROGRAMS = ["donex_sequence", "donex_evaluate", "donex_compare", "donex_map", "donex_bag", "donex_archive",
-            "donex_sequence_to_bag", "donex_simulate"]
+            "donex_sequence_to_bag", "donex_simulate", "donex_disturb"]
 CLOUDS = 20
 DEADLINE = 300.0  # for the first clouds on a slow machine [s]
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <fstream>
 
 #include <gtest/gtest.h>
@@ -161,6 +162,20 @@ TEST_F(Programs, CompareRefusesWhatItCannotRun) {
   EXPECT_NE(few.text.find("times.txt: is missing"), std::string::npos) << few.text;
   fs::remove_all(path("seq/labels"));
   expect(1, "seq/labels: holds no labels to score by", DONEX_COMPARE, "seq --out out");
+}
+
+TEST_F(Programs, DisturbAddsEchoesWithTruth) {
+  expect(0, "", DONEX_DISTURB, "seq out --own-body");
+  const SequenceReader before(path("seq")), after(path("out"));
+  ASSERT_EQ(after.size(), before.size());
+  EXPECT_EQ(after.stamp(5), before.stamp(5));
+  ASSERT_EQ(after.echoes(5), before.echoes(5) + 400);
+  const auto labels = after.labels(5), labels_before = before.labels(5);
+  EXPECT_TRUE(std::equal(labels_before.begin(), labels_before.end(), labels.begin()));
+  expect(2, "nothing to add", DONEX_DISTURB, "seq other");
+  expect(2, "rain is 2, must be between 0 and 1", DONEX_DISTURB, "seq other --rain 2");
+  expect(2, "is there already; --overwrite", DONEX_DISTURB, "seq out --rain 0.1");
+  expect(2, "is an input, which would be overwritten", DONEX_DISTURB, "seq seq --rain 0.1 --overwrite");
 }
 
 TEST_F(Programs, WholeDriveMethodsRunOnSequences) {

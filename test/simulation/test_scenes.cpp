@@ -178,6 +178,8 @@ TEST(Scenes, AreTheSameFromEveryCompiler) {
       {"foliage", -101243.9103},         {"fences", -164864.2373},
       {"bridges", -350610.7786},         {"slope", -521707.9528},
       {"turning", -7705.1666},           {"standstill_start", -324104.6065},
+      {"queue", -320686.2630},           {"doors", 282363.6791},
+      {"far_people", -8051.1719},        {"corners", -2882.3505},
       {"empty_room", 360.2812},
   };
   for (const std::string& name : sceneNames()) {

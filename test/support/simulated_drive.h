@@ -16,9 +16,11 @@ struct TrueScan {
 };
 
 /// Every `stride`-th echo of the first `scans` scans.
-inline std::vector<TrueScan> simulatedDrive(const std::string& scene, int beams, int scans, std::size_t stride = 1) {
+inline std::vector<TrueScan> simulatedDrive(const std::string& scene, int beams, int scans, std::size_t stride = 1,
+                                            const simulation::DisturbanceOptions& disturbance = {}) {
   simulation::SimulatorOptions options;
   options.beams = beams;
+  options.disturbance = disturbance;
   simulation::Simulator simulator(scene, options);
   std::vector<TrueScan> drive(static_cast<std::size_t>(scans));
   simulation::SimulatedScan simulated;
