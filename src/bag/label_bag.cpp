@@ -85,6 +85,7 @@ PipelineEvents Labeler::events() {
     remark("alarm", text + (check_ ? ", " + describe(check_->finding()) : ""));
   };
   events.strange_origin = [this](const std::string& text) { remark("origin of the clouds", text); };
+  events.unit_found = [this](const std::string& text) { remark("echo times", text); };
   events.strange_times = [this](const std::string& text) { remark("clouds not de-skewed", text); };
   return events;
 }

@@ -111,7 +111,7 @@ std::optional<TimeField> configuredTime(const PointCloud2& cloud, const CloudCon
   const auto usual = usualEncoding(field->datatype);
   if (!usual) return std::nullopt;
   const bool is_told = config.time_encoding != TimeEncoding::kAuto;
-  return TimeField{{field->offset, field->datatype}, is_told ? config.time_encoding : *usual};
+  return TimeField{{field->offset, field->datatype}, is_told ? config.time_encoding : *usual, is_told, {}};
 }
 
 std::optional<TimeField> findTime(const PointCloud2& cloud, const CloudConfig& config) {
@@ -119,7 +119,7 @@ std::optional<TimeField> findTime(const PointCloud2& cloud, const CloudConfig& c
   for (const KnownTime& known : kKnownTimes) {
     const PointField* field = findField(cloud, known.name);
     const bool usable = field != nullptr && field->datatype == known.datatype && fits(*field, cloud.point_step);
-    if (usable) return TimeField{{field->offset, field->datatype}, known.encoding};
+    if (usable) return TimeField{{field->offset, field->datatype}, known.encoding, false, {}};
   }
   return std::nullopt;
 }

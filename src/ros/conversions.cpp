@@ -107,15 +107,19 @@ class TimeReader {
       case TimeEncoding::kAbsoluteSeconds:
       case TimeEncoding::kAuto: origin_ = stamp; break;
     }
+    if (field.unit) scale_ = *field.unit;
   }
 
   /// After the stamp [s].
   double operator()(const std::uint8_t* point) const {
-    const double written = number(point + offset_);
+    const double written = this->written(point);
     // Livox writes `timestamp` in nanoseconds, the others in seconds: no clock has seen 10^14 s.
     const bool is_nanoseconds = unit_by_magnitude_ && std::abs(written) > 1e14;
     return (is_nanoseconds ? 1e-9 : scale_) * written - origin_;
   }
+
+  /// In no unit yet.
+  double written(const std::uint8_t* point) const { return number(point + offset_); }
 
  private:
   double number(const std::uint8_t* at) const {
@@ -213,6 +217,23 @@ void parseEchoes(const PointCloud2& cloud, const CloudLayout& layout, std::vecto
   }
   times.first = first;
   times.last = last;
+}
+
+std::vector<double> sampleWrittenTimes(const PointCloud2& cloud, const CloudLayout& layout, std::size_t count) {
+  std::vector<double> times;
+  const std::size_t echoes = layout.echoes();
+  if (!layout.time || echoes == 0 || count == 0) return times;
+  const bool swap = layout.swap_bytes;
+  const TimeReader reader(*layout.time, 0.0, swap);
+  const std::size_t stride = (echoes + count - 1) / count;
+  for (std::size_t i = 0; i < echoes; i += stride) {
+    const std::uint8_t* point =
+        cloud.data.data() + i / layout.width * layout.row_step + i % layout.width * layout.point_step;
+    const Eigen::Vector3f position(readCoordinate(point, layout.x, swap), readCoordinate(point, layout.y, swap),
+                                   readCoordinate(point, layout.z, swap));
+    if (echoOf(position).allFinite()) times.push_back(reader.written(point));
+  }
+  return times;
 }
 
 sensor_msgs::PointCloud2Ptr labelCloud(const PointCloud2& cloud, const CloudLayout& layout, const EchoLabels& labels) {

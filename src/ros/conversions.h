@@ -40,6 +40,11 @@ void parseEchoes(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layou
 sensor_msgs::PointCloud2Ptr labelCloud(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout,
                                        const EchoLabels& labels);
 
+/// The cloud's times as they are written, in no unit yet, of at most `count` echoes with finite coordinates that are
+/// spread evenly over it. Empty where it has none.
+std::vector<double> sampleWrittenTimes(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout,
+                                       std::size_t count);
+
 enum class CloudPart { kDynamic, kStatic };
 
 /// One of the two parts into which the labels divide the input, not organised; the input's own fields.

@@ -179,6 +179,7 @@ void Diagnostics::addCounts(DiagnosticStatusWrapper& status) const {
   status.add("alarms: what stands became dynamic at once", counts.floods);
   if (!last_flood_.empty()) status.add("last such alarm", last_flood_);
   status.add("last drop", last_drop_);
+  status.add("unit of the echo times", found_unit_);
   status.add("last echo times not used", last_strange_times_);
   if (!strange_origin_.empty()) status.add("origin of the clouds", strange_origin_);
   status.add("last odometry refused", last_refusal_);

@@ -34,6 +34,7 @@ class Diagnostics {
   std::string odometryText() const;
   void flooded(const std::string& text) { last_flood_ = text; }
   void strangeOrigin(const std::string& text) { strange_origin_ = text; }
+  void unitFound(const std::string& text) { found_unit_ = text; }
   void refused(const std::string& text) { last_refusal_ = text; }
   void failed(const std::string& text) {
     ++failures_;
@@ -73,7 +74,7 @@ class Diagnostics {
   mutable std::mutex checked_mutex_;
   std::optional<OdometryFinding> checked_;  // odometry against the scans; empty where that is not asked
   std::string tracking_;                    // empty where the ego motion is not found in the clouds
-  std::string last_drop_, last_refusal_, last_failure_, last_strange_times_, strange_origin_, last_flood_;
+  std::string last_drop_, last_refusal_, last_failure_, last_strange_times_, strange_origin_, last_flood_, found_unit_;
 };
 
 }  // namespace donex

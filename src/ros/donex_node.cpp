@@ -209,6 +209,10 @@ PipelineEvents DonexNode::Implementation::events() {
     ROS_WARN_STREAM_NAMED("donex", text);
     diagnostics_.strangeOrigin(text);
   };
+  events.unit_found = [this](const std::string& text) {
+    ROS_WARN_STREAM_NAMED("donex", text);
+    diagnostics_.unitFound(text);
+  };
   events.strange_times = [this](const std::string& text) {
     ROS_WARN_STREAM_THROTTLE_NAMED(kLogPeriod, "donex", text);
     diagnostics_.strangeTimes(text);

@@ -37,10 +37,18 @@ void Pipeline::addCloud(const sensor_msgs::PointCloud2ConstPtr& cloud, double no
   if (const auto* error = std::get_if<LayoutError>(&verdict)) return drop(DropReason::kBadLayout, error->text);
 
   WaitingCloud waiting{cloud, std::get<CloudLayout>(verdict), counts_.clouds_in, now, std::chrono::steady_clock::now()};
+  observeTimes(waiting);
   const bool is_old = last_labeled_ && cloud->header.stamp < *last_labeled_;
   if (is_old) return suspect(std::move(waiting));
   dropSuspect();
   place(std::move(waiting));
+}
+
+/// A cloud that waits has perhaps been read in the unit before: it is read again.
+void Pipeline::observeTimes(const WaitingCloud& waiting) {
+  if (!deskews() || !time_unit_.observe(*waiting.cloud, waiting.layout)) return;
+  parsed_ = 0;
+  if (!time_unit_.finding().empty() && events_.unit_found) events_.unit_found(time_unit_.finding());
 }
 
 void Pipeline::place(WaitingCloud cloud) {
@@ -165,7 +173,9 @@ void Pipeline::parse(const WaitingCloud& waiting) {
   if (parsed_ == waiting.number) return;
   const auto start = std::chrono::steady_clock::now();
   if (deskews()) {
-    parseEchoes(*waiting.cloud, waiting.layout, scan_.echoes, times_);
+    CloudLayout layout = waiting.layout;
+    time_unit_.apply(layout);
+    parseEchoes(*waiting.cloud, layout, scan_.echoes, times_);
   } else {
     times_.clear();
     parseEchoes(*waiting.cloud, waiting.layout, scan_.echoes);

@@ -19,6 +19,7 @@
 #include "ros/drop_reason.h"
 #include "ros/flood_watch.h"
 #include "ros/motion_source.h"
+#include "ros/time_unit.h"
 
 namespace donex {
 
@@ -48,6 +49,8 @@ struct PipelineEvents {
   std::function<void(const std::string& text)> strange_origin = nullptr;
   /// A large share of what stands has become dynamic at once, and what was checked; may be left empty.
   std::function<void(const std::string& text)> flooded = nullptr;
+  /// The unit of the echoes' times, where it is not the usual one of their field; may be left empty.
+  std::function<void(const std::string& text)> unit_found = nullptr;
 };
 
 struct PipelineCounts {
@@ -107,6 +110,7 @@ class Pipeline {
 
   bool deskews() const;
   void parse(const WaitingCloud& waiting);
+  void observeTimes(const WaitingCloud& waiting);
   void tellStrangeTimes(const WaitingCloud& waiting);
   void place(WaitingCloud cloud);
   void suspect(WaitingCloud cloud);
@@ -133,6 +137,7 @@ class Pipeline {
   std::size_t track_number_ = 0;
   int on_the_ground_ = 0;  // clouds in a row whose origin lies there
   std::shared_ptr<Detector> detector_;
+  TimeUnit time_unit_;
   bool watched_ = false;
   PipelineCounts counts_;
   std::deque<WaitingCloud> waiting_;  // by stamp

@@ -1,0 +1,132 @@
+// Echo times in the units that drivers and converters write, told by what they span.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "ros/pipeline_rig.h"
+#include "ros/time_unit.h"
+
+namespace donex {
+namespace {
+
+using sensor_msgs::PointField;
+using test::CloudBuilder;
+using test::PipelineRig;
+
+constexpr double kPeriod = 0.1;          // [s]
+constexpr double kSpeed = 10.0;          // [m/s]
+constexpr std::uint32_t kEchoes = 1000;  // a turn at 20 m
+
+struct Written {
+  const char* name;
+  std::uint8_t datatype;
+  double per_turn;  ///< what the time of the turn's end is written as
+};
+
+/// A turn of a sensor at `kSpeed` along x, whose echoes lie at 20 m straight ahead at the stamp.
+boost::shared_ptr<sensor_msgs::PointCloud2> turn(const Written& written, double stamp) {
+  auto cloud = CloudBuilder().stamp(stamp).xyz().field(written.name, written.datatype).size(kEchoes);
+  for (std::uint32_t i = 0; i < kEchoes; ++i) {
+    const double share = static_cast<double>(i) / kEchoes;
+    cloud.at(i, 20.0 - kSpeed * share * kPeriod, 0.0, 1.0).set(i, written.name, share * written.per_turn);
+  }
+  return cloud.build();
+}
+
+/// Clouds of a drive, the last one labelled.
+struct Drive {
+  explicit Drive(const Written& written, const Config& config = test::smallConfig()) : rig(config) {
+    for (int i = -10; i < 80; ++i) rig.odometry(100.0 + 0.01 * i, kSpeed);
+    for (int i = 0; i < 6; ++i) {
+      const double stamp = 100.0 + kPeriod * i;
+      rig.pipeline.addCloud(turn(written, stamp), stamp);
+      rig.run(stamp);
+    }
+    rig.pipeline.finish();
+  }
+
+  /// How far the echoes of the last cloud are from where they were at its stamp [m].
+  double worst() const {
+    double worst = 0.0;
+    for (const Eigen::Vector3f& echo : rig.labeled.back().echoes) {
+      worst = std::max(worst, std::abs(static_cast<double>(echo.x()) - 20.0));
+    }
+    return worst;
+  }
+
+  PipelineRig rig;
+};
+
+class Unit : public testing::TestWithParam<Written> {};
+
+TEST_P(Unit, IsFoundAndTheEchoesAreStraightened) {
+  const Drive drive(GetParam());
+  EXPECT_TRUE(drive.rig.drops.empty()) << drive.rig.drops[0];
+  ASSERT_EQ(drive.rig.labeled.size(), 6U);
+  EXPECT_LT(drive.worst(), 1e-3) << "[m]; without de-skewing it is " << kSpeed * kPeriod;
+}
+
+INSTANTIATE_TEST_SUITE_P(OfDriversAndConverters, Unit,
+                         testing::Values(Written{"time", PointField::FLOAT32, 0.1},
+                                         Written{"time", PointField::FLOAT32, 1.0},
+                                         Written{"time", PointField::FLOAT32, 1e2},
+                                         Written{"time", PointField::FLOAT32, 1e5},
+                                         Written{"t", PointField::UINT32, 1e8}, Written{"t", PointField::UINT32, 1e5},
+                                         Written{"offset_time", PointField::UINT32, 1e5}));
+
+TEST(TimeUnit, TheConfigurationOverrules) {
+  Config config = test::smallConfig();
+  config.cloud.time_field = "t";
+  config.cloud.time_encoding = TimeEncoding::kRelativeNanoseconds;
+  const Drive drive({"t", PointField::UINT32, 1e5}, config);
+  EXPECT_NEAR(drive.worst(), kSpeed * kPeriod, 0.01) << "microseconds read as nanoseconds, as was told";
+}
+
+std::string findingAfter(const std::vector<double>& stamps, const Written& written,
+                         double wild = std::numeric_limits<double>::quiet_NaN()) {
+  TimeUnit unit;
+  for (const double stamp : stamps) {
+    const auto cloud = turn(written, stamp);
+    if (!std::isnan(wild)) {
+      const std::size_t offset = 7 * cloud->point_step + 12;
+      const auto value = static_cast<float>(wild);
+      std::memcpy(&cloud->data[offset], &value, sizeof value);
+    }
+    unit.observe(*cloud, std::get<CloudLayout>(judgeLayout(*cloud)));
+  }
+  return unit.finding();
+}
+
+const std::vector<double> kRegular{100.0, 100.1, 100.2, 100.3, 100.4};
+
+TEST(TimeUnit, IsSaidWithItsFigures) {
+  const std::string finding = findingAfter(kRegular, {"t", PointField::UINT32, 1e5});
+  EXPECT_NE(finding.find("microseconds"), std::string::npos) << finding;
+  EXPECT_NE(finding.find("0.1 s apart"), std::string::npos) << finding;
+}
+
+TEST(TimeUnit, NothingIsSaidOfTheUsualOne) {
+  EXPECT_EQ(findingAfter(kRegular, {"t", PointField::UINT32, 1e8}), "");
+  EXPECT_EQ(findingAfter(kRegular, {"time", PointField::FLOAT32, 0.1}), "");
+}
+
+TEST(TimeUnit, OneWildTimeIsOutvoted) {
+  EXPECT_EQ(findingAfter(kRegular, {"time", PointField::FLOAT32, 0.1}, 1e5), "");
+}
+
+TEST(TimeUnit, LostCloudsAreOutvoted) {
+  const std::vector<double> gaps{100.0, 100.1, 103.0, 103.1, 103.2, 190.0, 190.1};
+  EXPECT_EQ(findingAfter(gaps, {"time", PointField::FLOAT32, 0.1}), "");
+}
+
+/// What spans neither a scan nor anything a thousand times as long is left as it is.
+TEST(TimeUnit, WhatFitsNoUnitStaysUsual) {
+  EXPECT_EQ(findingAfter(kRegular, {"t", PointField::UINT32, 1e3}), "");
+  EXPECT_EQ(findingAfter(kRegular, {"t", PointField::UINT32, 0.0}), "");
+}
+
+}  // namespace
+}  // namespace donex
