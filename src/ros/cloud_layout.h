@@ -41,8 +41,8 @@ struct FieldPosition {
 struct TimeField {
   FieldPosition position;
   TimeEncoding encoding = TimeEncoding::kAuto;  ///< kAuto: absolute, the unit told by its magnitude
-  bool is_told = false;         ///< the configuration names the encoding
-  std::optional<double> unit;   ///< what one written unit is [s], where it is not the encoding's (TimeUnit)
+  bool is_told = false;                         ///< the configuration names the encoding
+  std::optional<double> unit;  ///< what one written unit is [s], where it is not the encoding's (TimeUnit)
 };
 
 /// A readable cloud: every offset below lies within the data, for every echo.

@@ -10,6 +10,7 @@ namespace {
 
 /// A sensor that turns or nods on the vehicle keeps its place to this [m]; a frame that stands still does not.
 constexpr double kStaysWithin = 1.0;
+constexpr std::size_t kMostFrames = 64;  // of clouds on one topic; more are no sensors, and nothing is kept of them
 
 std::string withoutSlash(const std::string& frame) {
   return !frame.empty() && frame[0] == '/' ? frame.substr(1) : frame;
@@ -33,8 +34,9 @@ std::string CloudPlacer::movingFrame(const std::string& cloud_frame, OdometrySou
 std::optional<MotionMissing> CloudPlacer::refuseMoving(const std::string& frame, const ScanMotion& motion) {
   const bool is_fixed = frame == motion.odom_frame && motion.odom_frame != motion.base_frame;
   const Eigen::Vector3d place = motion.base_from_sensor.translation();
-  if (!first_place_) first_place_ = place;
-  const bool moves = (place - *first_place_).norm() > kStaysWithin;
+  if (first_places_.size() >= kMostFrames) first_places_.clear();
+  const Eigen::Vector3d& first = first_places_.emplace(frame, place).first->second;
+  const bool moves = (place - first).norm() > kStaysWithin;
   if (!is_fixed && !moves) return std::nullopt;
   return refusal("the vehicle moves in '" + frame +
                      "', the frame of the clouds: where their sensor was is not known; set sensor_frame",

@@ -1,6 +1,7 @@
 // Clouds that are told in another frame than that of their sensor: lines of sight begin where the sensor was.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,7 +26,7 @@ class CloudPlacer {
   std::optional<MotionMissing> place(const ros::Time& stamp, const std::string& cloud_frame, OdometrySource source,
                                      ScanMotion& motion);
 
-  void reset() { first_place_.reset(); }
+  void reset() { first_places_.clear(); }
 
  private:
   std::optional<MotionMissing> refuseMoving(const std::string& frame, const ScanMotion& motion);
@@ -33,7 +34,7 @@ class CloudPlacer {
   CloudConfig config_;
   std::string fixed_frame_;
   const tf2::BufferCore& tf_;
-  std::optional<Eigen::Vector3d> first_place_;  // of the clouds' frame in the vehicle's [m]
+  std::map<std::string, Eigen::Vector3d> first_places_;  // of each frame of clouds in the vehicle's [m]
 };
 
 void moveEchoes(const Eigen::Isometry3d& motion, std::vector<Eigen::Vector3f>& echoes);

@@ -7,6 +7,7 @@
 
 #include "donex/memory_bound.h"
 #include "donex/motion/deskew.h"
+#include "donex/whole_drive.h"
 #include "ros/parameters.h"
 
 namespace donex {
@@ -222,7 +223,8 @@ void Pipeline::followTrack(const ScanMotion& motion) {
 /// What the grid remembers lies elsewhere after a jump: all of it would look new.
 void Pipeline::followOdometry(const ScanMotion& motion) {
   const bool is_told = config_.motion.odometry_check && !motion.tracked && motion_.source() != OdometrySource::kNone;
-  if (!is_told) return;
+  const bool may_forget = !needsWholeDrive(config_.method);  // what has been seen of a whole drive is its answer
+  if (!is_told || !may_forget) return;
   if (motion.track_number != track_number_) jump_.reset();
   track_number_ = motion.track_number;
   const double jump = jump_.follow(scan_.stamp, scan_.odom_from_base);

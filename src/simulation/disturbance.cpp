@@ -12,14 +12,14 @@
 namespace donex::simulation {
 namespace {
 
-constexpr double kNearest = 1.5;      // [m] drops nearer are blown off the housing or too near to be measured
-constexpr double kSnowReach = 20.0;   // [m] flakes are larger than drops and return more
-constexpr float kFaint = 0.05F;       // intensity of drops, flakes and clouds
+constexpr double kNearest = 1.5;     // [m] drops nearer are blown off the housing or too near to be measured
+constexpr double kSnowReach = 20.0;  // [m] flakes are larger than drops and return more
+constexpr float kFaint = 0.05F;      // intensity of drops, flakes and clouds
 constexpr float kRetroreflective = 0.9F;
 constexpr int kOwnEchoes = 400;
-constexpr double kOwnNoise = 0.01;                          // [m] along the ray
+constexpr double kOwnNoise = 0.01;                           // [m] along the ray
 constexpr double kSecondNearest = 0.3, kSecondFarthest = 8;  // [m] behind the first echo
-constexpr double kHalo = 2.5 * kPi / 180.0;                 // [rad] radius of a halo
+constexpr double kHalo = 2.5 * kPi / 180.0;                  // [rad] radius of a halo
 
 /// An ellipsoid of something thin, in the sensor's frame [m]; it follows the vehicle.
 struct Plume {

@@ -35,8 +35,8 @@ void visitDisturbances(Options& options, Visitor&& visit) {
   visit(Info{"own_body", "", "the vehicle's own roof and bonnet are seen: 400 echoes more a scan"}, options.own_body);
   visit(Info{"dual_returns", "", "share of the echoes with a second one 0.3 to 8 m behind"}, options.dual_returns, 0.0,
         1.0);
-  visit(Info{"bloom", "", "echoes more around each echo of a retro-reflector (intensity from 0.9)"}, options.bloom,
-        0.0, 20.0);
+  visit(Info{"bloom", "", "echoes more around each echo of a retro-reflector (intensity from 0.9)"}, options.bloom, 0.0,
+        20.0);
 }
 
 /// Echoes of drops and clouds take the place of the echo they hide; bodies, second returns and halos come on top. All

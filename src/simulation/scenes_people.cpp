@@ -118,10 +118,8 @@ Scene makeCorners(std::uint64_t seed) {
     const PathPoint hidden = path->at(s + 1.5, side * kHidden);
     Course course;
     course.path = std::make_shared<const Path>(Path(hidden.position, hidden.yaw - side * 0.5 * kPi).line(60.0));
-    course.speed = SpeedProfile({{when, 0.0},
-                                 {when + kRamp, speed},
-                                 {when + kRamp + walking, speed},
-                                 {when + 2.0 * kRamp + walking, 0.0}});
+    course.speed = SpeedProfile(
+        {{when, 0.0}, {when + kRamp, speed}, {when + kRamp + walking, speed}, {when + 2.0 * kRamp + walking, 0.0}});
     builder.add(walks ? makePerson(random) : makeCyclist(random), course);
   }
   return std::move(builder.scene());

@@ -52,8 +52,7 @@ void addDoor(SceneBuilder& builder, const Path& path, double place, bool other_s
   door.parts.push_back({shape, 0.4F});
   const double outwards = closed.yaw + (other_side ? -0.5 : 0.5) * kPi;
   Course course;
-  course.path =
-      std::make_shared<const Path>(Path(closed.position, outwards).arc(kHalfDoor, other_side ? 1.1 : -1.1));
+  course.path = std::make_shared<const Path>(Path(closed.position, outwards).arc(kHalfDoor, other_side ? 1.1 : -1.1));
   course.speed = SpeedProfile({{when, 0.0}, {when + 0.3, 0.5}, {when + 1.1, 0.5}, {when + 1.4, 0.0}});
   builder.add(door, course);
 }

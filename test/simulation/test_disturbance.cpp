@@ -1,10 +1,9 @@
-#include "simulation/disturbance.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "simulation/disturbance.h"
 #include "simulation/simulator.h"
 
 namespace donex::simulation {

@@ -50,7 +50,8 @@ CalibrationFigure offsetOf(const ComparedTracks& tracks, const Poses& corrected,
   CalibrationFigure figure;
   figure.value = tracks.timeOffset(corrected);
   const double least = cost(figure.value);
-  const double curvature = (cost(figure.value - kAround) - 2.0 * least + cost(figure.value + kAround)) / (kAround * kAround);
+  const double curvature =
+      (cost(figure.value - kAround) - 2.0 * least + cost(figure.value + kAround)) / (kAround * kAround);
   if (!(curvature > 0.0) || independent < 2.0) return figure;
   figure.deviation = std::max(0.005, std::sqrt(2.0 * least / curvature / independent));
   // What a shift of 0.1 s changes has to be more than the noise of a sound odometry.
