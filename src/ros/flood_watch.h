@@ -1,4 +1,4 @@
-// An alarm that needs no cause: when a third of what stands becomes dynamic at once, it is never the world.
+// An alarm that needs no cause: when a third of a scan becomes dynamic at once, it is never the world.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace donex {
 class FloodWatch {
  public:
   struct Options {
-    double flood = 1.0 / 6.0;  ///< share of the judged echoes, about half of which are ground, that is no world's
+    double flood = 1.0 / 3.0;  ///< share of the judged echoes; among traffic and few beams a sixth moves indeed
     double usual = 0.05;       ///< share before, above which much moves indeed
     std::size_t echoes = 500;  ///< judged ones in a scan, fewer tell nothing
     int settled = 10;          ///< scans until the usual share is known

@@ -60,8 +60,9 @@ void OdometryCheck::reset() {
 }
 
 const OdometryFinding& OdometryCheck::check(const ScanInQuestion& scan) {
-  const bool ran_back = !scans_.empty() && scan.stamp < scans_.back().stamp;
-  if (ran_back) {
+  const double elapsed = scans_.empty() ? 0.0 : scan.stamp - scans_.back().stamp;
+  const bool breaks_off = elapsed < 0.0 || elapsed > options_.longest_gap;
+  if (breaks_off) {
     odometry_.reset();
     scans_.clear();
   }

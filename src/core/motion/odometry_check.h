@@ -59,6 +59,7 @@ class OdometryCheck {
     ComparisonWindow window;
     std::size_t history = 200;      ///< scans that are kept of both tracks
     std::size_t cause_scans = 200;  ///< of these, the newest in which the cause is looked for
+    double longest_gap = 0.35;      ///< between scans: after a longer one the scans' own motion is a guess [s]
     double jump = 0.25;             ///< a larger difference in one scan is a jump [m]
     std::size_t cause_period = 10;  ///< scans between two searches for the cause
     double flooded = 0.33;          ///< share of moving echoes above which labels tell nothing of what moves

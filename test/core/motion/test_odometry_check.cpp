@@ -85,6 +85,19 @@ TEST(OdometryCheck, TellsAJumpOnce) {
   EXPECT_NEAR(jumps[10], 0.5, 0.01);
 }
 
+TEST(OdometryCheck, BeginsAnewAfterAGap) {
+  OdometryCheck check;
+  static const auto kWorld = courtyard();
+  for (int i = 0; i < 40; ++i) {
+    const double stamp = 0.1 * i + 0.9 * (i / 8);  // as where a busy machine drops clouds
+    const Eigen::Isometry3d truth = bendingDrive().poseAt(stamp);
+    check.check({stamp, seenFrom(truth, kWorld), Eigen::Isometry3d::Identity(), truth});
+    EXPECT_NE(check.finding().agreement, Agreement::kDisagrees) << i;
+  }
+  EXPECT_EQ(check.finding().windows, 0U) << "none is that short";
+  EXPECT_EQ(check.finding().jumps, 0U);
+}
+
 TEST(OdometryCheck, CannotTellAlongACorridor) {
   OdometryCheck check;
   const auto echoes = seenFrom(Eigen::Isometry3d::Identity(), corridor(-39.9, 39.9));
