@@ -8,11 +8,15 @@
 
 #include "core/grid/simd.h"
 #include "core/grid/storage.h"
+#include "core/pi.h"
 
 namespace donex {
 namespace {
 
-constexpr int kReach = 2;  // cells over which the ground is continued; a bit per neighbour, see Cell::nearer
+constexpr int kReach = 2;      // cells over which the ground is continued; a bit per neighbour, see Cell::nearer
+constexpr int kBearings = 64;  // sectors of equal azimuth, a bit each
+constexpr int kNearCells = 6;  // around the sensor, where sectors are narrower than cells
+constexpr std::uint64_t kAllSectors = ~std::uint64_t{0};
 constexpr float kNone = std::numeric_limits<float>::infinity();
 
 /// The number of every echo's cell, or -1 outside the map.
@@ -42,9 +46,11 @@ int Ground::widthOf(double reach, float cell) {
 Ground::Ground(double reach, const GroundOptions& options) : options_(options), width_(widthOf(reach, options.cell)) {
   const auto cells = static_cast<std::size_t>(width_) * static_cast<std::size_t>(width_);
   lowest_.resize(cells);
+  before_.resize(cells, kNone);
   ground_.resize(cells, kNone);
   unseen_.resize(cells, 0.0F);
   outwards_.reserve(cells);
+  sectors_.reserve(cells);
   for (int y = -kReach; y <= kReach; ++y) {
     for (int x = -kReach; x <= kReach; ++x) {
       around_.push_back({x, y, y * width_ + x, options_.cell * std::sqrt(static_cast<float>(x * x + y * y)), 0.0F});
@@ -53,6 +59,7 @@ Ground::Ground(double reach, const GroundOptions& options) : options_(options), 
   for (int y = -(width_ / 2); y <= width_ / 2; ++y) {
     for (int x = -(width_ / 2); x <= width_ / 2; ++x) {
       outwards_.push_back({static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), neighboursNearerTo(x, y)});
+      sectors_.push_back(sectorsOf(x, y));
     }
   }
   std::stable_sort(outwards_.begin(), outwards_.end(),
@@ -72,31 +79,103 @@ std::uint32_t Ground::neighboursNearerTo(int x, int y) const {
 
 Eigen::Vector2f Ground::offsetOf(const Cell& cell) const { return options_.cell * Eigen::Vector2f(cell.x, cell.y); }
 
-void Ground::estimate(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
-                      const std::vector<std::uint8_t>& is_echo) {
-  sensor_ = sensor;
-  std::fill(lowest_.begin(), lowest_.end(), kNone);
-  std::fill(ground_.begin(), ground_.end(), kNone);
-  resizeTo(cell_of_, echoes.size());
-  findCells(sensor_, options_.cell, width_, echoes.data(), echoes.size(), cell_of_.data());
-  for (std::size_t i = 0; i < echoes.size(); ++i) {
-    if (is_echo[i] == 0 || cell_of_[i] < 0) continue;
-    float& lowest = lowest_[static_cast<std::size_t>(cell_of_[i])];
-    lowest = std::min(lowest, echoes[i].z());
+void Ground::estimate(TurnPart part, const Eigen::Vector3d& origin, const Eigen::Vector3f& sensor,
+                      const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo) {
+  if (part == TurnPart::kContinuing) {
+    shift_ = (origin - origin_).cast<float>();
+  } else {
+    beginMap(part, origin, sensor);
   }
+  collect(echoes, is_echo);
   if (!findStart()) return;
   // The slope around the sensor goes on.
   for (Neighbour& by : around_) {
     by.climb = options_.cell * (start_.x() * static_cast<float>(by.x) + start_.y() * static_cast<float>(by.y));
   }
+  continueOutwards(is_known_ ? sectorsHit() : kAllSectors);
+  is_known_ = true;
+}
+
+/// After a turn in parts the map moves by whole cells, so that what is known of a cell stays that cell's.
+void Ground::beginMap(TurnPart part, const Eigen::Vector3d& origin, const Eigen::Vector3f& sensor) {
+  shift_.setZero();
+  if (part == TurnPart::kFirst) {
+    const Eigen::Vector3d moved = origin - origin_ + (sensor - sensor_).cast<double>();
+    const Eigen::Array2d cells = (moved.head<2>().array() / static_cast<double>(options_.cell)).round();
+    const Eigen::Array2d beside = moved.head<2>().array() - static_cast<double>(options_.cell) * cells;
+    moveMap(static_cast<int>(cells.x()), static_cast<int>(cells.y()), static_cast<float>(origin_.z() - origin.z()));
+    sensor_ = sensor;
+    sensor_.head<2>() -= beside.matrix().cast<float>();
+  } else {
+    std::fill(before_.begin(), before_.end(), kNone);
+    std::fill(ground_.begin(), ground_.end(), kNone);
+    is_known_ = false;
+    sensor_ = sensor;
+  }
+  origin_ = origin;
+  std::fill(lowest_.begin(), lowest_.end(), kNone);
+}
+
+/// The map's centre moves by so many cells, and everything in it up by `up` [m].
+void Ground::moveMap(int x, int y, float up) {
+  before_.swap(lowest_);
+  moveMap(before_, x, y, up);
+  moveMap(ground_, x, y, up);
+  moveMap(unseen_, x, y, 0.0F);
+}
+
+/// What comes into the map has the values of its rim.
+void Ground::moveMap(std::vector<float>& map, int x, int y, float up) {
+  moved_.resize(map.size());
+  const auto inside = [&](int i) { return static_cast<std::size_t>(std::clamp(i, 0, width_ - 1)); };
+  const auto width = static_cast<std::size_t>(width_);
+  for (int to_y = 0; to_y < width_; ++to_y) {
+    for (int to_x = 0; to_x < width_; ++to_x) {
+      moved_[inside(to_y) * width + inside(to_x)] = map[inside(to_y + y) * width + inside(to_x + x)] + up;
+    }
+  }
+  map.swap(moved_);
+}
+
+void Ground::collect(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo) {
+  resizeTo(cell_of_, echoes.size());
+  findCells(sensor_ - shift_, options_.cell, width_, echoes.data(), echoes.size(), cell_of_.data());
+  for (std::size_t i = 0; i < echoes.size(); ++i) {
+    if (is_echo[i] == 0 || cell_of_[i] < 0) continue;
+    float& lowest = lowest_[static_cast<std::size_t>(cell_of_[i])];
+    lowest = std::min(lowest, echoes[i].z() + shift_.z());
+  }
+}
+
+/// Sectors that hold an echo of the present cloud, and those beside.
+Ground::Sectors Ground::sectorsHit() const {
+  Sectors hit = 0;
+  for (const int cell : cell_of_) {
+    if (cell < 0) continue;
+    const Sectors sectors = sectors_[static_cast<std::size_t>(cell)];
+    if (sectors != kAllSectors) hit |= sectors;
+  }
+  return hit | hit << 1 | hit >> 1 | hit << (kBearings - 1) | hit >> (kBearings - 1);
+}
+
+Ground::Sectors Ground::sectorsOf(int x, int y) {
+  if (x * x + y * y <= kNearCells * kNearCells) return kAllSectors;
+  const float turn = std::atan2(static_cast<float>(y), static_cast<float>(x)) / (2.0F * kPiF) + 0.5F;
+  return Sectors{1} << std::min(static_cast<int>(turn * kBearings), kBearings - 1);
+}
+
+/// Cells of other sectors keep the ground that they have.
+void Ground::continueOutwards(Sectors sectors) {
   for (const Cell& cell : outwards_) {
     const std::size_t i = indexOf(cell.x, cell.y);
+    if ((sectors_[i] & sectors) == 0) continue;
     const Continuation expected = continueTo(cell);
     const float down = std::min(options_.roughness + options_.fall * expected.unseen, options_.largest_step);
     const float rise = std::min(options_.kerb + options_.rise * expected.unseen, options_.largest_step);
-    const float step = lowest_[i] - expected.height;
+    const float lowest = lowestIn(i);
+    const float step = lowest - expected.height;
     const bool continues = step > -down && step < rise;
-    ground_[i] = continues ? lowest_[i] : expected.height;
+    ground_[i] = continues ? lowest : expected.height;
     unseen_[i] = continues ? 0.0F : expected.unseen;
   }
 }
@@ -107,7 +186,8 @@ bool Ground::findStart() {
   for (const Cell& cell : outwards_) {
     const bool enough = near_.size() >= options_.start_cells && cell.squaredDistance() > radius * radius;
     if (enough) break;
-    const float lowest = lowest_[indexOf(cell.x, cell.y)];
+    const std::size_t i = indexOf(cell.x, cell.y);
+    const float lowest = lowestIn(i);
     const Eigen::Vector2f offset = offsetOf(cell);
     if (lowest != kNone) near_.emplace_back(offset.x(), offset.y(), lowest);
   }
@@ -152,7 +232,7 @@ Ground::Continuation Ground::continueTo(const Cell& cell) const {
 
 float Ground::heightOf(const Eigen::Vector3f& point) const {
   int cell = -1;
-  findCells(sensor_, options_.cell, width_, &point, 1, &cell);
+  findCells(sensor_ - shift_, options_.cell, width_, &point, 1, &cell);
   return heightIn(cell, point.z());
 }
 
@@ -164,18 +244,19 @@ void Ground::heightsOf(const std::vector<Eigen::Vector3f>& echoes, std::vector<f
 float Ground::heightIn(int cell, float z) const {
   if (cell < 0) return kNone;
   const float ground = ground_[static_cast<std::size_t>(cell)];
-  return ground == kNone ? kNone : z - ground;
+  return ground == kNone ? kNone : z + shift_.z() - ground;
 }
 
 double Ground::bytesFor(double reach, double echoes, const GroundOptions& options) {
   const double cells = std::pow(widthOf(reach, options.cell), 2);
-  return cells * (sizeof(Cell) + 3 * sizeof(float)) + roomFor(echoes * sizeof(int));
+  return cells * (sizeof(Cell) + sizeof(Sectors) + 5 * sizeof(float)) + roomFor(echoes * sizeof(int));
 }
 
 std::size_t Ground::memoryBytes() const {
-  return outwards_.capacity() * sizeof(Cell) + around_.capacity() * sizeof(Neighbour) +
-         cell_of_.capacity() * sizeof(int) +
-         (lowest_.capacity() + ground_.capacity() + unseen_.capacity()) * sizeof(float) +
+  return outwards_.capacity() * sizeof(Cell) + sectors_.capacity() * sizeof(Sectors) +
+         around_.capacity() * sizeof(Neighbour) + cell_of_.capacity() * sizeof(int) +
+         (lowest_.capacity() + before_.capacity() + ground_.capacity() + unseen_.capacity() + moved_.capacity()) *
+             sizeof(float) +
          near_.capacity() * sizeof(Eigen::Vector3f);
 }
 

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>
+
+#include "core/sight/turns.h"
 
 namespace donex {
 
@@ -24,7 +27,7 @@ struct GroundOptions {
   double levelling = 50.0;                                 ///< as if so much spoke for level ground [m^2]
 };
 
-/// A height map of one scan. Cells take their lowest echo where it continues the ground of the cells
+/// A height map of one turn. Cells take their lowest echo where it continues the ground of the cells
 /// nearer to the sensor, and their neighbours' height where it does not: then the cell holds an object only.
 class Ground {
  public:
@@ -33,7 +36,13 @@ class Ground {
 
   /// `echoes` [m] in a frame whose z points up; those with `is_echo` 0 are left out.
   void estimate(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
-                const std::vector<std::uint8_t>& is_echo);
+                const std::vector<std::uint8_t>& is_echo) {
+    estimate(TurnPart::kWhole, Eigen::Vector3d::Zero(), sensor, echoes, is_echo);
+  }
+  /// The same from a part of a turn, where earlier parts and the turn before tell what this one does not show.
+  /// `origin`: where the frame lies in one that never moves and has the same axes [m].
+  void estimate(TurnPart part, const Eigen::Vector3d& origin, const Eigen::Vector3f& sensor,
+                const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo);
 
   /// Height above the ground [m]; infinite outside the map, or where no ground was found at all.
   float heightOf(const Eigen::Vector3f& point) const;
@@ -46,6 +55,8 @@ class Ground {
   static double bytesFor(double reach, double echoes, const GroundOptions& options = {});
 
  private:
+  /// A bit per direction, in sectors of equal azimuth; the cells around the sensor lie in all of them.
+  using Sectors = std::uint64_t;
   struct Cell {
     std::int16_t x, y;     ///< from the sensor's
     std::uint32_t nearer;  ///< which neighbours are nearer to the sensor, and in the map: a bit each
@@ -59,6 +70,13 @@ class Ground {
   };
 
   static int widthOf(double reach, float cell);
+  static Sectors sectorsOf(int x, int y);
+  void beginMap(TurnPart part, const Eigen::Vector3d& origin, const Eigen::Vector3f& sensor);
+  void moveMap(int x, int y, float up);
+  void moveMap(std::vector<float>& map, int x, int y, float up);
+  void collect(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo);
+  Sectors sectorsHit() const;
+  void continueOutwards(Sectors sectors);
   std::size_t indexOf(int x, int y) const {
     const int middle = width_ / 2;
     return static_cast<std::size_t>(y + middle) * static_cast<std::size_t>(width_) +
@@ -66,7 +84,9 @@ class Ground {
   }
   float heightIn(int cell, float z) const;
   Eigen::Vector2f offsetOf(const Cell& cell) const;  ///< from the sensor's cell [m]
-  bool findStart();                                  ///< false where no echo is near
+  /// In this turn, or in the one before where this one has none yet.
+  float lowestIn(std::size_t cell) const { return std::isinf(lowest_[cell]) ? before_[cell] : lowest_[cell]; }
+  bool findStart();  ///< false where no echo is near
   Eigen::Vector3f fitStart(float reach) const;
   /// As Cell::nearer.
   std::uint32_t neighboursNearerTo(int x, int y) const;
@@ -80,12 +100,18 @@ class Ground {
   Continuation continueTo(const Cell& cell) const;
 
   GroundOptions options_;
-  int width_;  ///< cells along an edge
-  Eigen::Vector3f sensor_ = Eigen::Vector3f::Zero();
-  std::vector<Cell> outwards_;  ///< by distance from the sensor
+  int width_;                                         ///< cells along an edge
+  Eigen::Vector3f sensor_ = Eigen::Vector3f::Zero();  ///< at the map's centre, or less than a cell from it [m]
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  ///< of the map's frame [m]
+  Eigen::Vector3f shift_ = Eigen::Vector3f::Zero();   ///< of the present cloud's frame against the map's [m]
+  bool is_known_ = false;                             ///< all cells have a ground, if only continued
+  std::vector<Cell> outwards_;                        ///< by distance from the sensor
   std::vector<Neighbour> around_;
   std::vector<int> cell_of_;                         ///< by echo, -1 outside
   std::vector<float> lowest_, ground_;               ///< by cell [m]
+  std::vector<float> before_;                        ///< by cell: the lowest echo in the turn before [m]
+  std::vector<float> moved_;                         ///< storage for moving a map
+  std::vector<Sectors> sectors_;                     ///< by cell
   std::vector<float> unseen_;                        ///< by cell: how far the ground is only continued [m]
   std::vector<Eigen::Vector3f> near_;                ///< lowest echoes of the cells around the sensor, from there [m]
   Eigen::Vector3f start_ = Eigen::Vector3f::Zero();  ///< slopes along x, y, and the height under the sensor [m]

@@ -46,9 +46,9 @@ class EvidenceDetector : public Detector {
     places_.shift(scan.odom_from_base);        // voxel shift (paper, "Ego motion")
     places_.window().enter(scan, in_voxels_);  // every frame once: in voxels,
     enterPoints(scan.stamp);                   // in metres, and what lies between them and the odometry
-    const bool begins_turn = sights_.arrive(scan, judged_.is_echo);
-    if (begins_turn) clock_.begin(scan.stamp);
-    heightsAboveGround();
+    const TurnPart part = sights_.arrive(scan, judged_.is_echo);
+    if (part != TurnPart::kContinuing) clock_.begin(scan.stamp);
+    heightsAboveGround(part);
     const SightView before = sights_.seenBefore(judged_.odom_from_points);
     judgePlaces(before);
     sights_.add(scan, judged_.is_echo);
@@ -109,13 +109,13 @@ class EvidenceDetector : public Detector {
   }
 
   /// Ground: the height of every echo, and so its role in clusters.
-  void heightsAboveGround() {
+  void heightsAboveGround(TurnPart part) {
     const bool enabled = config_.evidence.ground;
     const auto clearance = static_cast<float>(config_.evidence.ground_clearance);
     judged_.has_ground = enabled;
     resizeTo(judged_.heights, judged_.points.size());
     if (enabled) {
-      ground_.estimate(judged_.sensor, judged_.points, judged_.is_echo);
+      ground_.estimate(part, judged_.odom_from_points.translation(), judged_.sensor, judged_.points, judged_.is_echo);
       ground_.heightsOf(judged_.points, judged_.heights);
     }
     judged_.roles.assign(judged_.points.size(), ClusterRole::kNone);

@@ -11,14 +11,15 @@ constexpr double kSamePose = 1e-5;  // as isApprox has it: a part needs no new p
 
 }  // namespace
 
-bool SightHistory::arrive(const Scan& scan, const std::vector<std::uint8_t>& is_echo) {
+TurnPart SightHistory::arrive(const Scan& scan, const std::vector<std::uint8_t>& is_echo) {
   pixels_.project(scan.echoes, is_echo);
   newest_mounting_ = scan.base_from_sensor;
-  if (!turns_.arrive(scan, pixels_)) return false;
+  const TurnPart part = turns_.arrive(scan, pixels_);
+  if (part == TurnPart::kContinuing) return part;
   turn_began_ = scan.stamp;
   keeps_turn_ = kept_.empty() || scan.stamp >= kept_.back().stamp + 0.9 * spacing_;
   if (keeps_turn_) ++turn_;
-  return true;
+  return part;
 }
 
 void SightHistory::add(const Scan& scan, const std::vector<std::uint8_t>& is_echo) {

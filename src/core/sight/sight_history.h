@@ -92,8 +92,8 @@ class SightHistory {
   SightHistory(double length, double spacing, float margin, const SightImage::Reading& reading)
       : length_(length), spacing_(spacing), margin_(margin), reading_(reading) {}
 
-  /// A cloud arrives; add() follows. True where it begins a turn. Stamps never run backwards.
-  bool arrive(const Scan& scan, const std::vector<std::uint8_t>& is_echo);
+  /// A cloud arrives; add() follows. Stamps never run backwards.
+  TurnPart arrive(const Scan& scan, const std::vector<std::uint8_t>& is_echo);
   /// Takes what the cloud saw that arrived last. Views made before are no longer valid.
   void add(const Scan& scan, const std::vector<std::uint8_t>& is_echo);
 

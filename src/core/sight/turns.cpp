@@ -12,7 +12,7 @@ constexpr std::size_t kRepeated = 4;               // one in so many columns see
 
 }  // namespace
 
-bool Turns::arrive(const Scan& scan, const SightPixels& seen) {
+TurnPart Turns::arrive(const Scan& scan, const SightPixels& seen) {
   const Columns columns = columnsOf(seen);
   Sensor* sensor = sensorAt(scan.base_from_sensor);
   const bool is_long = sensors_.empty() || scan.stamp - begin_ > kLongest;
@@ -34,7 +34,10 @@ bool Turns::arrive(const Scan& scan, const SightPixels& seen) {
   } else {
     for (std::size_t c = 0; c < kColumns; ++c) sensor->looked[c] = std::max(sensor->looked[c], columns[c]);
   }
-  return !goes_on;
+  const bool was_in_parts = clouds_ > 1;
+  clouds_ = goes_on ? clouds_ + 1 : 1;
+  if (goes_on) return TurnPart::kContinuing;
+  return was_in_parts ? TurnPart::kFirst : TurnPart::kWhole;
 }
 
 bool Turns::areOne(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {

@@ -10,17 +10,27 @@
 
 namespace donex {
 
+/// Where in a turn a cloud comes (algorithm: "Parts of scans").
+enum class TurnPart {
+  kWhole,       ///< the turn before was one cloud, and this one is taken for another
+  kFirst,       ///< it begins a turn, after one that came in parts
+  kContinuing,  ///< it goes on with the turn
+};
+
 /// A turn is the clouds from one on until a sensor looks again where it has looked since. Whole scans are a turn each;
 /// a sensor that publishes sectors, and several sensors on one vehicle, have turns of several clouds, in whatever order
 /// they come. All of that is measured in the directions of the echoes; nothing tells what a cloud is.
 class Turns {
  public:
-  /// Takes the next cloud. `seen`: its pixels in its own frame. True where it begins a turn.
-  bool arrive(const Scan& scan, const SightPixels& seen);
+  /// Takes the next cloud. `seen`: its pixels in its own frame.
+  TurnPart arrive(const Scan& scan, const SightPixels& seen);
   /// Whether two mountings are one sensor's.
   static bool areOne(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b);
-  /// The next cloud begins a turn.
-  void reset() { sensors_.clear(); }
+  /// The next cloud begins a turn, after none.
+  void reset() {
+    sensors_.clear();
+    clouds_ = 0;
+  }
 
   static constexpr double kLongest = 0.3;         ///< [s] what parts see in longer turns is not of one place any more
   static constexpr double kSamePlace = 0.05;      ///< [m] between two mountings of one sensor,
@@ -38,7 +48,8 @@ class Turns {
   static Columns columnsOf(const SightPixels& seen);
   Sensor* sensorAt(const Eigen::Isometry3d& base_from_sensor);
 
-  double begin_ = 0.0;  ///< [s]
+  double begin_ = 0.0;      ///< [s]
+  std::size_t clouds_ = 0;  ///< of the turn
   std::vector<Sensor> sensors_;
 };
 

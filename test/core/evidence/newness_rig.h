@@ -31,7 +31,7 @@ class Rig {
   template <class Check>
   void process(const Scan& scan, Check&& check) {
     const std::vector<std::uint8_t> is_echo(scan.echoes.size(), 1);
-    if (history.arrive(scan, is_echo)) clock.begin(scan.stamp);
+    if (history.arrive(scan, is_echo) != TurnPart::kContinuing) clock.begin(scan.stamp);
     newness.shift(scan.odom_from_base);
     const GridWindow& window = newness.window();
     GridScan in_grid;

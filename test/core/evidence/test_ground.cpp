@@ -174,6 +174,78 @@ TEST(Ground, EchoesThatAreNoneAndEmptyScansTellNothing) {
   EXPECT_FALSE(std::isfinite(ground.heightOf({5.0F, 0.0F, 0.0F}))) << "the scan before is forgotten";
 }
 
+/// Turns of a sensor that moves and publishes sectors, in a frame that jumps ahead with it.
+class GroundInParts {
+ public:
+  GroundInParts(HeightWorld world, int parts) : world_(std::move(world)), parts_(parts) {}
+
+  /// The sensor's next turn. Calls visit(echo in the world, its height above the ground) as the parts are judged.
+  template <class Visit>
+  void turn(Visit&& visit) {
+    const Eigen::Vector3d sensor(1.3 * turns_, 0.4 * turns_, world_.ground(1.3 * turns_, 0.4 * turns_) + kMount);
+    const std::vector<Eigen::Vector3f> seen = world_.seenFrom(sensor, 1.2 * kReach);
+    for (int part = 0; part < parts_; ++part) {
+      const Eigen::Vector3d origin(0.7 * (turns_ + part % 3), -0.7 * turns_, 0.7 * (part % 2));
+      std::vector<Eigen::Vector3f> echoes;
+      for (const Eigen::Vector3f& echo : seen) {
+        const Eigen::Vector2d away = echo.head<2>().cast<double>() - sensor.head<2>();
+        const double turn = std::atan2(away.y(), away.x()) / (2.0 * M_PI) + 0.5;
+        if (std::min(static_cast<int>(turn * parts_), parts_ - 1) != part) continue;
+        echoes.push_back(echo - origin.cast<float>());
+      }
+      const TurnPart begins = turns_ == 0 ? TurnPart::kWhole : TurnPart::kFirst;
+      ground_.estimate(part == 0 ? begins : TurnPart::kContinuing, origin, (sensor - origin).cast<float>(), echoes,
+                       std::vector<std::uint8_t>(echoes.size(), 1));
+      std::vector<float> heights;
+      ground_.heightsOf(echoes, heights);
+      for (std::size_t i = 0; i < echoes.size(); ++i) {
+        ASSERT_EQ(heights[i], ground_.heightOf(echoes[i]));
+        visit(Eigen::Vector3f(echoes[i] + origin.cast<float>()), heights[i]);
+      }
+    }
+    ++turns_;
+  }
+
+ private:
+  HeightWorld world_;
+  int parts_;
+  int turns_ = 0;
+  Ground ground_{kReach};
+};
+
+TEST(Ground, PartsOfATurnFindTheGroundThatTheWholeHas) {
+  for (const int parts : {2, 4, 10, 40}) {
+    HeightWorld world = sloping(0.05, -0.04);
+    world.blocks = {{4.0, 9.0, -8.0, -2.0, 2.0}, {-20.0, -12.0, 3.0, 6.0, 3.0}, {15.0, 19.0, 2.0, 4.0, 1.5}};
+    GroundInParts ground(world, parts);
+    ground.turn([](const Eigen::Vector3f&, float) {});
+    for (int turn = 1; turn < 4; ++turn) {
+      int all = 0, right = 0;
+      ground.turn([&](const Eigen::Vector3f& echo, float height) {
+        const double rise = echo.z() - world.ground(echo.x(), echo.y());
+        const bool is_told = std::isfinite(height) && (rise < 0.05 || rise > 0.6);
+        all += is_told ? 1 : 0;
+        right += is_told && (height > kClearance) == (rise > 0.6) ? 1 : 0;
+      });
+      EXPECT_GT(all, 1000);
+      EXPECT_GE(right, 0.995 * all) << parts << " parts, turn " << turn;
+    }
+  }
+}
+
+TEST(Ground, APartThatShowsNoGroundHasThatOfTheTurnBefore) {
+  Ground ground(kReach);
+  const Eigen::Vector3f sensor(0.0F, 0.0F, 1.8F);
+  const std::vector<Eigen::Vector3f> road = HeightWorld{}.seenFrom({0.0, 0.0, kMount}, 20.0);
+  ground.estimate(TurnPart::kWhole, Eigen::Vector3d::Zero(), sensor, road, std::vector<std::uint8_t>(road.size(), 1));
+  const std::vector<Eigen::Vector3f> side_of_a_lorry = {{7.0F, 0.1F, 1.0F}, {7.0F, 0.3F, 2.0F}, {7.0F, 0.5F, 3.0F}};
+  const std::vector<std::uint8_t> all(side_of_a_lorry.size(), 1);
+  ground.estimate(TurnPart::kFirst, Eigen::Vector3d::Zero(), sensor, side_of_a_lorry, all);
+  EXPECT_NEAR(ground.heightOf(side_of_a_lorry[0]), 1.0F, 0.1F);
+  ground.estimate(TurnPart::kContinuing, Eigen::Vector3d::Zero(), sensor, side_of_a_lorry, all);
+  EXPECT_NEAR(ground.heightOf(side_of_a_lorry[0]), 1.0F, 0.1F);
+}
+
 /// A rough world around a sensor somewhere: echoes of the ground, of objects on it, stray ones, and invalid ones.
 struct RandomScan {
   explicit RandomScan(unsigned seed) {

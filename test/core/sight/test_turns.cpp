@@ -31,10 +31,28 @@ std::vector<int> turnsOf(const std::vector<Scan>& clouds) {
   int turn = 0;
   for (const Scan& cloud : clouds) {
     pixels.project(cloud.echoes, std::vector<std::uint8_t>(cloud.echoes.size(), 1));
-    turn += turns.arrive(cloud, pixels) ? 1 : 0;
+    turn += turns.arrive(cloud, pixels) != TurnPart::kContinuing ? 1 : 0;
     result.push_back(turn);
   }
   return result;
+}
+
+TEST(Turns, AFirstPartIsToldByTheTurnBefore) {
+  Turns turns;
+  SightPixels pixels;
+  const auto arrive = [&](double stamp, double from, double to) {
+    const Scan cloud = sector(stamp, from, to);
+    pixels.project(cloud.echoes, std::vector<std::uint8_t>(cloud.echoes.size(), 1));
+    return turns.arrive(cloud, pixels);
+  };
+  EXPECT_EQ(arrive(0.0, 0.0, 360.0), TurnPart::kWhole);
+  EXPECT_EQ(arrive(0.1, 0.0, 180.0), TurnPart::kWhole) << "as long as nothing follows";
+  EXPECT_EQ(arrive(0.15, 180.0, 360.0), TurnPart::kContinuing);
+  EXPECT_EQ(arrive(0.2, 0.0, 180.0), TurnPart::kFirst);
+  EXPECT_EQ(arrive(0.3, 0.0, 180.0), TurnPart::kWhole) << "the turn before was one cloud";
+  EXPECT_EQ(arrive(0.35, 180.0, 360.0), TurnPart::kContinuing);
+  turns.reset();
+  EXPECT_EQ(arrive(0.4, 0.0, 180.0), TurnPart::kWhole) << "nothing was before";
 }
 
 TEST(Turns, WholeScansAreATurnEach) {
