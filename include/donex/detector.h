@@ -45,6 +45,9 @@ class Detector {
   /// Somebody wants memoryCells() of the coming scans: only then is kept what it needs.
   virtual void watch(bool) {}
 
+  /// Whether the last scan holds hardly any ground although the method looks for it.
+  virtual bool lacksGround() const { return false; }
+
   virtual GridOutline outline() const = 0;
 
   /// Bytes held by the method's own memory.

@@ -86,6 +86,7 @@ PipelineEvents Labeler::events() {
   };
   events.strange_origin = [this](const std::string& text) { remark("origin of the clouds", text); };
   events.unit_found = [this](const std::string& text) { remark("echo times", text); };
+  events.remarked = [this](CloudRemark kind, const std::string& text) { remark(describe(kind), text); };
   events.strange_times = [this](const std::string& text) { remark("clouds not de-skewed", text); };
   return events;
 }
@@ -159,6 +160,21 @@ void requireLabels(const LabelBagSummary& summary, const std::string& file) {
                               summary.points, remarksOf(summary)));
 }
 
+/// Why odometry_source auto takes it, and what to set otherwise.
+std::string whyOf(OdometrySource source, const std::string& frames) {
+  switch (source) {
+    case OdometrySource::kPose: return " (chosen: the bag holds odometry; otherwise set odometry_source)";
+    case OdometrySource::kTf:
+      return " (chosen: the bag holds no nav_msgs/Odometry, and its tf knows these frames; otherwise set "
+             "odometry_source)";
+    default:
+      return fmt::format(
+          " (chosen: the bag holds no nav_msgs/Odometry, and its tf does not know {}; otherwise set fixed_frame and "
+          "base_frame, or odometry_source)",
+          frames);
+  }
+}
+
 std::string motionOf(OdometrySource source, const std::string& odom, const MotionConfig& config) {
   switch (source) {
     case OdometrySource::kPose: return "poses of odometry on " + odom;
@@ -208,6 +224,13 @@ LabelBagOptions chosenMotion(const LabelBagOptions& options, rosbag::View& view,
     source = tellsMotionByTf(bags, chosen.config.motion) ? OdometrySource::kTf : OdometrySource::kLidar;
   }
   return chosen;
+}
+
+LabelBagSummary explained(LabelBagSummary summary, const LabelBagOptions& asked, const LabelBagOptions& chosen) {
+  const MotionConfig& motion = chosen.config.motion;
+  const bool is_chosen = asked.config.motion.source != motion.source;
+  if (is_chosen) summary.motion += whyOf(motion.source, motion.base_frame + " in " + motion.fixed_frame);
+  return summary;
 }
 
 /// The parts of a recording, open.
@@ -291,7 +314,8 @@ LabelBagSummary judge(Recording& recording, const LabelBagOptions& options, cons
 LabelBagSummary judgeBag(const BagParts& in, const LabelBagOptions& options, const LabelBagSink& sink,
                          const LabelBagProgress& progress) {
   Recording recording(in);
-  return judge(recording, chosenMotion(options, recording.all(), recording.bags()), sink, progress);
+  const LabelBagOptions chosen = chosenMotion(options, recording.all(), recording.bags());
+  return explained(judge(recording, chosen, sink, progress), options, chosen);
 }
 
 LabelBagSummary labelBag(const BagParts& in, const BagParts& out, const LabelBagOptions& options,
@@ -318,7 +342,7 @@ LabelBagSummary labelBag(const BagParts& in, const BagParts& out, const LabelBag
   LabelBagSummary summary = judge(recording, chosen, write, progress);
   advance(out.size() - 1);
   writer->commit();
-  return summary;
+  return explained(std::move(summary), options, chosen);
 }
 
 }  // namespace donex

@@ -108,6 +108,7 @@ Health Diagnostics::health() const {
   if (last_odometry_) health.odometry_age = seconds(now - *last_odometry_);
   health.drops = drops_.size();
   health.last_drop = describe(last_reason_);
+  health.region_fault = remarkOf(pipeline_.remarks(), CloudRemark::kRegionMissed);
   health.waiting = pipeline_.waiting();
   const auto found = checked();
   if (found && found->agreement == Agreement::kDisagrees) health.odometry_fault = describe(found->cause);
@@ -178,6 +179,10 @@ void Diagnostics::addCounts(DiagnosticStatusWrapper& status) const {
   status.add("odometry jumps", counts.jumps);
   status.add("alarms: what stands became dynamic at once", counts.floods);
   if (!last_flood_.empty()) status.add("last such alarm", last_flood_);
+  for (std::size_t i = 0; i < kCloudRemarks; ++i) {
+    const auto kind = static_cast<CloudRemark>(i);
+    status.add(describe(kind), remarkOf(pipeline_.remarks(), kind));
+  }
   status.add("last drop", last_drop_);
   status.add("unit of the echo times", found_unit_);
   status.add("last echo times not used", last_strange_times_);

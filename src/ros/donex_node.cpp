@@ -26,6 +26,9 @@ constexpr double kLogPeriod = 5.0;     // between messages of one kind [s]
 constexpr double kCheckPeriod = 30.0;  // the same of odometry that disagrees with the scans [s]
 constexpr double kRetryPeriod = 0.01;  // waiting clouds are asked about this often at least [s]
 
+/// Between subscriptions to tf while a transform is missing [s].
+constexpr double kTfRenewal = 5.0;
+
 /// A queue of roscpp's that is full drops silently. Ours takes whatever comes while one scan is judged; after that scan
 /// the callbacks, which only enqueue, hand all of it to the pipeline, which bounds and counts.
 constexpr std::uint32_t kUnbounded = 0;
@@ -59,6 +62,8 @@ class DonexNode::Implementation {
   PipelineEvents events();
   void publish(const LabeledScan& scan);
   void checkOdometry(const LabeledScan& scan);
+  void listenToTf();
+  void renewTf();
 
   /// An exception out of a callback would end the whole manager.
   template <class Function>
@@ -71,6 +76,7 @@ class DonexNode::Implementation {
   Config config_;
   tf2_ros::Buffer tf_;
   std::unique_ptr<tf2_ros::TransformListener> tf_listener_;
+  ros::WallTime listening_since_;
   Pipeline pipeline_;
   Diagnostics diagnostics_;
   ScanPublisher publisher_;
@@ -98,7 +104,7 @@ DonexNode::Implementation::Implementation(const ros::NodeHandle& nh, const ros::
                                      << " MB at most (memory_limit " << config_.memory_limit << " MB)");
   // A sensor at rest needs no tf.
   const bool needs_tf = config_.motion.source != OdometrySource::kNone;
-  if (needs_tf) tf_listener_ = std::make_unique<tf2_ros::TransformListener>(tf_, nh_);
+  if (needs_tf) listenToTf();
 
   reset_service_ = pnh_.advertiseService("reset", &Implementation::onReset, this);
   reconfigure_ = std::make_unique<Reconfigure>(pnh_, config_, [this](const Config& config) { onChange(config); });
@@ -123,6 +129,20 @@ DonexNode::Implementation::~Implementation() {
   reconfigure_.reset();
   nh_.getCallbackQueue()->removeByID(queueId());
   odometry_monitor_.reset();
+}
+
+void DonexNode::Implementation::listenToTf() {
+  tf_listener_.reset();  // first: a topic with a subscriber left is not connected anew
+  tf_listener_ = std::make_unique<tf2_ros::TransformListener>(tf_, nh_);
+  listening_since_ = ros::WallTime::now();
+}
+
+/// /tf_static is sent once to each subscriber; whoever missed it would wait for ever.
+void DonexNode::Implementation::renewTf() {
+  const bool is_due = tf_listener_ && (ros::WallTime::now() - listening_since_).toSec() >= kTfRenewal;
+  if (!is_due) return;
+  ROS_WARN_STREAM_NAMED("donex", "a transform is missing: subscribing to tf anew");
+  listenToTf();
 }
 
 template <class Function>
@@ -192,6 +212,7 @@ PipelineEvents DonexNode::Implementation::events() {
     const std::string full = std::string(describe(reason)) + ": " + text;
     ROS_WARN_STREAM_THROTTLE_NAMED(kLogPeriod, "donex", "cloud dropped, " << full);
     diagnostics_.dropped(reason, full);
+    if (reason == DropReason::kNoTransform) renewTf();
   };
   events.refused = [this](OdometryRefusal refusal, const std::string& text) {
     const std::string full = std::string(describe(refusal)) + ": " + text;
@@ -199,6 +220,9 @@ PipelineEvents DonexNode::Implementation::events() {
     diagnostics_.refused(full);
   };
   events.forgotten = [](const std::string& text) { ROS_WARN_STREAM_NAMED("donex", text); };
+  events.remarked = [](CloudRemark kind, const std::string& text) {
+    ROS_WARN_STREAM_NAMED("donex", describe(kind) << ": " << text);
+  };
   events.motion_chosen = [](const std::string& text) { ROS_INFO_STREAM_NAMED("donex", text); };
   events.flooded = [this](const std::string& text) {
     const std::string full = text + ", " + diagnostics_.odometryText();

@@ -27,6 +27,7 @@ const char* describe(OdometryRefusal refusal) {
     case OdometryRefusal::kTooOld: return "too old";
     case OdometryRefusal::kNoFrame: return "no frame";
     case OdometryRefusal::kStandsStill: return "pose stands still, twist does not";
+    case OdometryRefusal::kOtherSource: return "a second source";
   }
   return "unknown";
 }

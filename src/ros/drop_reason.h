@@ -33,8 +33,9 @@ enum class OdometryRefusal {
   kTooOld,
   kNoFrame,
   kStandsStill,  ///< the pose stays where it is while the twist moves
+  kOtherSource,  ///< of other frames than those of the odometry in use
 };
-constexpr std::size_t kOdometryRefusals = 6;
+constexpr std::size_t kOdometryRefusals = 7;
 
 const char* describe(OdometryRefusal refusal);
 

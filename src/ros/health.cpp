@@ -51,6 +51,7 @@ HealthLine tell(const Health& health) {
   addOdometry(health, problems);
   addOdometryFault(health, problems);
   addDrops(health, problems);
+  if (!health.region_fault.empty()) problems.push_back(health.region_fault);
   const bool stuck = problems.empty() && health.labeled_rate <= 0.0;
   if (stuck) problems.push_back(textOf("no scan labelled yet, %zu waiting", health.waiting));
   if (problems.empty()) {

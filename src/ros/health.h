@@ -17,6 +17,7 @@ struct Health {
   std::string odometry_fault;          ///< likely cause; empty where odometry and scans agree
   std::size_t drops = 0;               ///< scans
   std::string last_drop;               ///< why, in a few words
+  std::string region_fault;            ///< why hardly anything can be judged; empty where much can
   std::size_t waiting = 0;             ///< scans
   std::string failure;                 ///< an exception; empty without one
 };

@@ -17,6 +17,9 @@ constexpr double kTfStep = 0.005;
 /// Times a driver rounds to floats or nanoseconds may miss the odometry they were taken with by this much [s].
 constexpr double kTimeRounding = 1e-6;
 
+/// Odometry that has been silent for so long makes way for one of other frames [s].
+constexpr double kSourceSilence = 1.0;
+
 template <class... Parts>
 std::string textOf(const Parts&... parts) {
   std::ostringstream text;
@@ -106,14 +109,29 @@ void MotionSource::learn(const std::vector<std::uint8_t>& dynamic) {
   if (source_ == OdometrySource::kLidar) scan_odometry_.learn(dynamic);
 }
 
+MotionSource::Frames MotionSource::framesOf(const nav_msgs::Odometry& odometry) const {
+  const std::string& child = odometry.child_frame_id;
+  return {frameName(child.empty() ? config_.base_frame : child), frameName(odometry.header.frame_id)};
+}
+
+/// How many of the two are those of the configuration.
+int MotionSource::configured(const Frames& frames) const {
+  return (frames.base == frameName(config_.base_frame) ? 1 : 0) +
+         (frames.odom == frameName(config_.fixed_frame) ? 1 : 0);
+}
+
+/// Whether the odometry in use goes on beside this one, and is not to make way for it.
+bool MotionSource::isSecondSource(const Frames& frames, double stamp) const {
+  if (frames == frames_ || odometry_.empty()) return false;
+  const bool goes_on = std::abs(stamp - odometry_.newestStamp()) < kSourceSilence;
+  return goes_on && configured(frames) <= configured(frames_);
+}
+
 bool MotionSource::adoptFrames(const nav_msgs::Odometry& odometry) {
-  const std::string child = odometry.child_frame_id.empty() ? config_.base_frame : odometry.child_frame_id;
-  const std::string base = frameName(child), odom = frameName(odometry.header.frame_id);
-  const bool same = base == base_frame_ && odom == odom_frame_;
-  if (same) return false;
-  const bool first = base_frame_.empty();
-  base_frame_ = base;
-  odom_frame_ = odom;
+  const Frames frames = framesOf(odometry);
+  if (frames == frames_) return false;
+  const bool first = frames_.base.empty();
+  frames_ = frames;
   odometry_.reset();
   return !first;
 }
@@ -122,6 +140,13 @@ OdometryVerdict MotionSource::add(const nav_msgs::Odometry& odometry) {
   const double stamp = odometry.header.stamp.toSec();
   const bool nameless = odometry.header.frame_id.empty() || (odometry.child_frame_id + config_.base_frame).empty();
   if (nameless) return refusedFor(OdometryRefusal::kNoFrame, textOf("odometry of ", stamp, " s names no frames"));
+  const Frames frames = framesOf(odometry);
+  if (isSecondSource(frames, stamp)) {
+    return refusedFor(
+        OdometryRefusal::kOtherSource,
+        textOf("two sources on the odometry topic: '", frames_.base, "' in '", frames_.odom, "', which is used, and '",
+               frames.base, "' in '", frames.odom, "'; fixed_frame and base_frame choose, or take the topic of one"));
+  }
   OdometrySample sample;
   sample.stamp = stamp;
   sample.twist = twistOf(odometry);
@@ -152,7 +177,7 @@ OdometryVerdict MotionSource::addSample(const nav_msgs::Odometry& odometry, cons
   if (is_new_track) ++track_number_;
   if (!frames_changed) return verdict;
   return {
-      OdometryVerdict::Kind::kNewTrack, {}, textOf("odometry now moves '", base_frame_, "' in '", odom_frame_, "'")};
+      OdometryVerdict::Kind::kNewTrack, {}, textOf("odometry now moves '", frames_.base, "' in '", frames_.odom, "'")};
 }
 
 std::variant<Eigen::Isometry3d, MotionMissing> MotionSource::lookup(const std::string& target,
@@ -198,8 +223,8 @@ std::optional<MotionMissing> MotionSource::choose(const ScanTimes& times, bool s
     choice_ = textOf("ego motion from tf '", fixed, "' <- '", base, "': there are no odometry messages");
   } else {
     source_ = OdometrySource::kLidar;
-    choice_ =
-        textOf("ego motion from the clouds: there are no odometry messages and no tf '", fixed, "' <- '", base, "'");
+    choice_ = textOf("ego motion from the clouds: there are no odometry messages and no tf '", fixed, "' <- '", base,
+                     "'; odometry_source, odom, fixed_frame and base_frame say otherwise");
   }
   return std::nullopt;
 }
@@ -252,14 +277,14 @@ MotionAnswer MotionSource::fromOdometry(const ScanTimes& times, const std::strin
     const auto pose = odometry_.poseAt(moment);
     if (!pose) return missing(pose.fault(), stamp);
   }
-  const auto mounting = lookup(base_frame_, sensor_frame, times.stamp);
+  const auto mounting = lookup(frames_.base, sensor_frame, times.stamp);
   if (const auto* nothing = std::get_if<MotionMissing>(&mounting)) return *nothing;
 
   ScanMotion motion;
   motion.base_from_sensor = std::get<Eigen::Isometry3d>(mounting);
   motion.odom_from_base = *odometry_.poseAt(stamp);
-  motion.odom_frame = odom_frame_;
-  motion.base_frame = base_frame_;
+  motion.odom_frame = frames_.odom;
+  motion.base_frame = frames_.base;
   if (times.spanTime()) motion.track = &odometry_;
   addMidway(times, odometry_, motion);
   return motion;

@@ -109,6 +109,14 @@ class MotionSource {
   OdometryVerdict addSample(const nav_msgs::Odometry& odometry, const OdometrySample& sample);
   std::variant<Eigen::Isometry3d, MotionMissing> lookup(const std::string& target, const std::string& source,
                                                         const ros::Time& stamp) const;
+  /// The vehicle's frame and the one that it moves in.
+  struct Frames {
+    std::string base, odom;
+    bool operator==(const Frames& other) const { return base == other.base && odom == other.odom; }
+  };
+  Frames framesOf(const nav_msgs::Odometry& odometry) const;
+  int configured(const Frames& frames) const;
+  bool isSecondSource(const Frames& frames, double stamp) const;
   bool adoptFrames(const nav_msgs::Odometry& odometry);
 
   MotionConfig config_;
@@ -122,7 +130,7 @@ class MotionSource {
   ScanOdometry scan_odometry_;
   std::optional<Eigen::Isometry3d> mounting_;  // with kLidar; it stays
   std::string mounted_frame_;                  // the vehicle's, with kLidar
-  std::string odom_frame_, base_frame_;        // of the odometry in use; empty before the first
+  Frames frames_;                              // of the odometry in use; empty before the first
 };
 
 }  // namespace donex

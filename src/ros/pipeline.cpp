@@ -181,6 +181,7 @@ void Pipeline::parse(const WaitingCloud& waiting) {
     times_.clear();
     parseEchoes(*waiting.cloud, waiting.layout, scan_.echoes);
   }
+  no_returns_ = removeNoReturns(origin().cast<float>(), scan_.echoes);
   parsed_ = waiting.number;
   parsing_time_ = secondsSince(start);
 }
@@ -192,7 +193,11 @@ void Pipeline::label(const WaitingCloud& waiting, const ScanMotion& motion) {
   scan_.base_from_sensor = motion.base_from_sensor;
   scan_.odom_from_base = motion.odom_from_base;
   suspectOrigin(motion, waiting.cloud->header.frame_id);
-  if (motion.sensor_from_cloud) moveEchoes(*motion.sensor_from_cloud, scan_.echoes);
+  if (motion.sensor_from_cloud) {
+    const Eigen::Vector3d sensor = motion.sensor_from_cloud->inverse().translation();
+    no_returns_ = removeNoReturns(sensor.cast<float>(), scan_.echoes);
+    moveEchoes(*motion.sensor_from_cloud, scan_.echoes);
+  }
   if (motion.track != nullptr) {
     const MotionFault fault =
         deskew(*motion.track, scan_.stamp, scan_.base_from_sensor, times_.after_stamp, scan_.echoes);
@@ -203,6 +208,7 @@ void Pipeline::label(const WaitingCloud& waiting, const ScanMotion& motion) {
   followOdometry(motion);
   detector_->process(scan_, labels_);
   watchFlood();
+  remark();
   motion_.learn(labels_.dynamic);
   last_labeled_ = stamp;
   events_.labeled({waiting.cloud, waiting.layout, scan_, labels_, *detector_, motion.odom_frame, motion,
@@ -277,11 +283,22 @@ void Pipeline::watchFlood() {
 
 /// Lines of sight begin in the origin of the scan's frame: in a merged cloud that is not where the sensor is.
 void Pipeline::moveToOrigin() {
-  const Eigen::Vector3d origin(config_.cloud.origin_x, config_.cloud.origin_y, config_.cloud.origin_z);
-  if (origin.isZero(0.0)) return;
-  const Eigen::Vector3f shift = origin.cast<float>();
+  if (origin().isZero(0.0)) return;
+  const Eigen::Vector3f shift = origin().cast<float>();
   for (Eigen::Vector3f& echo : scan_.echoes) echo -= shift;
-  scan_.base_from_sensor.translate(origin);
+  scan_.base_from_sensor.translate(origin());
+}
+
+void Pipeline::remark() {
+  constexpr int kCertain = 10;  // scans in a row; a lorry alongside hides the ground for a few
+  without_ground_ = detector_->lacksGround() ? std::min(without_ground_ + 1, kCertain) : 0;
+  remarks_ = remarksOn(scan_, no_returns_, config_.region, without_ground_ == kCertain);
+  for (std::size_t kind = 0; kind < kCloudRemarks; ++kind) {
+    const bool is_news = !remarks_[kind].empty() && !remarked_[kind];
+    if (!is_news) continue;
+    remarked_[kind] = true;
+    if (events_.remarked) events_.remarked(static_cast<CloudRemark>(kind), remarks_[kind]);
+  }
 }
 
 void Pipeline::finish() {

@@ -1,6 +1,7 @@
 // From messages to labels: what the node and donex_bag share, so that both give the same labels, echo by echo.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <deque>
 #include <functional>
@@ -15,6 +16,7 @@
 #include "core/motion/odometry_jump.h"
 #include "donex/detector.h"
 #include "ros/cloud_placer.h"
+#include "ros/cloud_remarks.h"
 #include "ros/conversions.h"
 #include "ros/drop_reason.h"
 #include "ros/flood_watch.h"
@@ -43,6 +45,8 @@ struct PipelineEvents {
   std::function<void(OdometryRefusal, const std::string& text)> refused;  ///< once per refused odometry
   std::function<void(const std::string& text)> forgotten;                 ///< the grid is empty again, and why
   std::function<void(const std::string& text)> strange_times;             ///< once per cloud that cannot be de-skewed
+  /// What is strange about a cloud that is labelled all the same: each kind once; may be left empty.
+  std::function<void(CloudRemark, const std::string& text)> remarked = nullptr;
   /// Where the ego motion comes from, once odometry_source auto knows; may be left empty.
   std::function<void(const std::string& text)> motion_chosen = nullptr;
   /// Once, where the clouds look as if their sensor were elsewhere; may be left empty.
@@ -97,6 +101,8 @@ class Pipeline {
   std::size_t waiting() const { return waiting_.size(); }
   const PipelineCounts& counts() const { return counts_; }
   const Detector& detector() const { return *detector_; }
+  /// On the newest labelled cloud.
+  const CloudRemarks& remarks() const { return remarks_; }
   const MotionSource& motion() const { return motion_; }
 
  private:
@@ -125,6 +131,8 @@ class Pipeline {
   MotionAnswer motionOf(const WaitingCloud& waiting, bool settle);
   void label(const WaitingCloud& waiting, const ScanMotion& motion);
   void moveToOrigin();
+  void remark();
+  Eigen::Vector3d origin() const { return {config_.cloud.origin_x, config_.cloud.origin_y, config_.cloud.origin_z}; }
   void refuse(OdometryRefusal refusal, const std::string& text);
   void drop(DropReason reason, const std::string& text);
 
@@ -135,7 +143,8 @@ class Pipeline {
   OdometryJump jump_;
   FloodWatch flood_;
   std::size_t track_number_ = 0;
-  int on_the_ground_ = 0;  // clouds in a row whose origin lies there
+  int on_the_ground_ = 0;   // clouds in a row whose origin lies there
+  int without_ground_ = 0;  // clouds in a row
   std::shared_ptr<Detector> detector_;
   TimeUnit time_unit_;
   bool watched_ = false;
@@ -151,6 +160,9 @@ class Pipeline {
   std::size_t parsed_ = 0;     // the number of the cloud that scan_ and times_ hold
   double parsing_time_ = 0.0;  // [s]
   Scan scan_;
+  NoReturns no_returns_;
+  CloudRemarks remarks_;
+  std::array<bool, kCloudRemarks> remarked_{};  // kinds that have been told
   EchoTimes times_;
   EchoLabels labels_;
 };

@@ -138,6 +138,37 @@ TEST(LabelBag, MovesBySequenceOfTfAndNeedsNoOdometryThen) {
   EXPECT_GT(countDynamic(expected), 100) << "equal labels say little";
 }
 
+TEST(LabelBag, FindsOutWhatABagTellsOfTheMotionAndSaysWhy) {
+  const TemporaryDirectory directory;
+  const fs::path in = directory.path() / "in.bag", out = directory.path() / "out.bag";
+  test::writeDriveBag(directory.path() / "drive", in, 6);
+  const fs::path only_tf = directory.path() / "only_tf.bag";
+  {
+    rosbag::Bag from(in.string(), rosbag::bagmode::Read), to(only_tf.string(), rosbag::bagmode::Write);
+    for (const rosbag::MessageInstance& message : rosbag::View(from)) {
+      const bool is_odometry = message.getDataType() == "nav_msgs/Odometry";
+      if (!is_odometry) to.write(message.getTopic(), message.getTime(), message, message.getConnectionHeader());
+    }
+  }
+  LabelBagOptions options;
+  options.config.motion.source = OdometrySource::kAuto;
+  const auto with_odometry = test::label(in, out, options);
+  EXPECT_NE(with_odometry.motion.find("poses of odometry on /odom (chosen: the bag holds odometry"), std::string::npos)
+      << with_odometry.motion;
+  const auto by_tf = test::label(only_tf, directory.path() / "by_tf.bag", options);
+  EXPECT_EQ(by_tf.counts.clouds_labeled, 6U);
+  EXPECT_NE(by_tf.motion.find("tf, base_link in odom (chosen: the bag holds no nav_msgs/Odometry"), std::string::npos)
+      << by_tf.motion;
+  options.config.motion.fixed_frame = "map";
+  try {
+    const auto by_clouds = test::label(only_tf, directory.path() / "by_clouds.bag", options);
+    EXPECT_NE(by_clouds.motion.find("does not know base_link in map; otherwise set fixed_frame"), std::string::npos)
+        << by_clouds.motion;
+  } catch (const DataError&) {
+    ADD_FAILURE() << "clouds alone are enough";
+  }
+}
+
 TEST(LabelBag, WhatIsDroppedIsCountedAndExplained) {
   const TemporaryDirectory directory;
   const fs::path in = directory.path() / "in.bag", out = directory.path() / "out.bag";

@@ -36,6 +36,8 @@ TEST(Health, SaysWhatAnEngineerUnderstands) {
          health.drops = 1;
          health.last_drop = "queue full";
        }},
+      {"WARN: 0.2 % of the echoes lie in the region", Level::kWarn,
+       [](Health& health) { health.region_fault = "0.2 % of the echoes lie in the region"; }},
       {"WARN: odometry disagrees with the scans (its scale, 1.050 times the true lengths)", Level::kWarn,
        [](Health& health) { health.odometry_fault = "its scale, 1.050 times the true lengths"; }},
       {"WARN: no clouds for 3.0 s", Level::kWarn, [](Health& health) { health.silent = 3.0; }},

@@ -170,6 +170,44 @@ TEST(Pipeline, OdometryOfAnUnconnectedFrame) {
   EXPECT_EQ(rig.forgotten.size(), 1U);
 }
 
+/// Odometry of a second source, in step with the usual one.
+nav_msgs::Odometry otherOdometry(double stamp) {
+  auto odometry = test::odometryAt(stamp, 3.0);
+  odometry.header.frame_id = "map";
+  return odometry;
+}
+
+TEST(Pipeline, OfTwoSourcesOnOneTopicTheConfiguredOneIsUsed) {
+  for (const bool is_second_first : {false, true}) {
+    PipelineRig rig;
+    if (is_second_first) rig.pipeline.addOdometry(otherOdometry(99.95));
+    for (int i = 0; i < 10; ++i) {
+      const double stamp = 100.0 + 0.1 * i;
+      rig.odometry(stamp);
+      rig.pipeline.addOdometry(otherOdometry(stamp + 0.02));
+      rig.cloud(stamp);
+      rig.run(stamp);
+    }
+    EXPECT_EQ(rig.labeled.size(), 10U);
+    EXPECT_EQ(rig.refused(OdometryRefusal::kOtherSource), 10U);
+    EXPECT_EQ(rig.forgotten.size(), is_second_first ? 1U : 0U);
+    EXPECT_NE(rig.refusals.at(0).find("two sources"), std::string::npos) << rig.refusals[0];
+    for (const char* frame : {"'odom'", "'map'", "fixed_frame"}) {
+      EXPECT_NE(rig.refusals[0].find(frame), std::string::npos) << rig.refusals[0];
+    }
+  }
+}
+
+TEST(Pipeline, ASourceThatEndsMakesWayForAnother) {
+  PipelineRig rig;
+  for (int i = 0; i < 5; ++i) rig.odometry(100.0 + 0.1 * i);
+  for (int i = 0; i < 5; ++i) rig.pipeline.addOdometry(otherOdometry(102.0 + 0.1 * i));
+  rig.cloud(102.1);
+  rig.run(102.4);
+  EXPECT_EQ(rig.labeled.size(), 1U);
+  EXPECT_EQ(rig.refused(OdometryRefusal::kOtherSource), 0U);
+}
+
 TEST(Pipeline, ALeadingSlashIsNoOtherFrame) {
   PipelineRig rig;
   auto odometry = test::odometryAt(100.0);

@@ -19,6 +19,9 @@ constexpr std::size_t kPrefetchAhead = 12;  // echoes; long enough for memory to
 
 struct EvidenceDetectorOptions {
   float lowest_of_objects = 0.07F;  ///< from here up to the ground clearance echoes may belong to an object [m]
+  double least_ground = 0.05;       ///< of the echoes in the region; with fewer on it the ground is taken for removed
+  double most_beneath = 0.25;       ///< as many as lie on it; with more beneath it is none
+  float ground_roughness = 0.1F;    ///< echoes so near to the ground's height lie on it [m]
   double history_spacing = 0.09;    ///< a 10 Hz sensor's every scan, a 20 Hz sensor's every second [s]
 };
 
@@ -86,6 +89,8 @@ class EvidenceDetector : public Detector {
     return memoryCellsOf(places_, clock_, config_.evidence, sights_, judged_.odom_from_points);
   }
 
+  bool lacksGround() const override { return lacks_ground_; }
+
   GridOutline outline() const override { return places_.window().outline(); }
 
   std::size_t memoryBytes() const override {
@@ -108,6 +113,22 @@ class EvidenceDetector : public Detector {
     placePoints(window, in_voxels_, judged_.points, judged_.is_echo);
   }
 
+  /// Whether hardly an echo in the region lies on what was found, or many lie beneath it: then somebody has removed the
+  /// ground, and the lowest echoes of objects stand in for it.
+  bool isGroundMissing() const {
+    std::size_t inside = 0, on_ground = 0, beneath = 0;
+    for (std::size_t i = 0; i < judged_.points.size(); ++i) {
+      if (in_voxels_.inside[i] == 0) continue;
+      const float height = judged_.heights[i];
+      ++inside;
+      beneath += height < -options_.ground_roughness ? 1U : 0U;
+      on_ground += std::abs(height) <= options_.ground_roughness ? 1U : 0U;
+    }
+    const auto on = static_cast<double>(on_ground);
+    return on < options_.least_ground * static_cast<double>(inside) ||
+           static_cast<double>(beneath) > options_.most_beneath * on;
+  }
+
   /// Ground: the height of every echo, and so its role in clusters.
   void heightsAboveGround(TurnPart part) {
     const bool enabled = config_.evidence.ground;
@@ -117,6 +138,10 @@ class EvidenceDetector : public Detector {
     if (enabled) {
       ground_.estimate(part, judged_.odom_from_points.translation(), judged_.sensor, judged_.points, judged_.is_echo);
       ground_.heightsOf(judged_.points, judged_.heights);
+      lacks_ground_ = isGroundMissing();
+      if (lacks_ground_) {
+        for (float& height : judged_.heights) height += clearance;  // nothing is on the ground
+      }
     }
     judged_.roles.assign(judged_.points.size(), ClusterRole::kNone);
     for (std::size_t i = 0; i < judged_.points.size(); ++i) {
@@ -124,7 +149,7 @@ class EvidenceDetector : public Detector {
       if (!enabled) judged_.heights[i] = judged_.points[i].z();
       const float height = judged_.heights[i];
       if (in_voxels_.inside[i] == 0) continue;
-      const bool is_above = !enabled || height > clearance;
+      const bool is_above = !enabled || lacks_ground_ || height > clearance;
       if (is_above) {
         judged_.roles[i] = ClusterRole::kConnects;
       } else if (height > options_.lowest_of_objects) {
@@ -185,6 +210,7 @@ class EvidenceDetector : public Detector {
   Segments segments_;
   Verdicts verdicts_;
   std::vector<Proof> proofs_;  ///< per echo
+  bool lacks_ground_ = false;
 };
 
 }  // namespace

@@ -1,0 +1,121 @@
+// Clouds that are labelled and should not be believed without a word, two sources of one thing, and tf that was lost.
+#include <tf2_msgs/TFMessage.h>
+
+#include "ros/faults_rig.h"
+
+namespace donex {
+namespace {
+
+using test::FaultsTest;
+using test::waitFor;
+
+class FaultsOfClouds : public FaultsTest {
+ protected:
+  void drive(const std::vector<Eigen::Vector3f>& echoes, int scans, const std::string& frame = "lidar") {
+    const std::size_t before = received_.size();
+    for (int scan = 0; scan < scans; ++scan) {
+      advance();
+      sendOdometry(now_);
+      ++clouds_sent_;
+      clouds_.publish(test::plainCloud(echoes, now_, frame));
+    }
+    ASSERT_TRUE(waitForLabeled(before + static_cast<std::size_t>(scans))) << status_;
+  }
+  bool waitForStatus(const std::string& text) {
+    return waitFor([&] { return status_.find(text) != std::string::npos; });
+  }
+  int dynamicEchoes() const {
+    int count = 0;
+    const auto& cloud = *received_.back();
+    for (std::size_t i = 0; i < cloud.width; ++i) count += test::labelOf(cloud, "dynamic", i);
+    return count;
+  }
+
+  const std::vector<Eigen::Vector3f> ring_ = test::ring(500);
+};
+
+TEST_F(FaultsOfClouds, ARegionBesideEverything) {
+  ros::param::set(nodeName() + "/z_min", -9.0);
+  ros::param::set(nodeName() + "/z_max", -5.0);
+  load();
+  drive(ring_, 5);
+  ASSERT_TRUE(waitForStatus("0.0 % of the echoes lie in the region")) << status_;
+  conclude("a region beside everything; the status says `0.0 % of the echoes lie in the region`",
+           "every scan labelled");
+}
+
+TEST_F(FaultsOfClouds, Millimetres) {
+  load();
+  drive(test::ring(500, 10000.0F), 5);
+  ASSERT_TRUE(waitForStatus("are the clouds in metres?")) << status_;
+  conclude("clouds in millimetres; the status asks `are the clouds in metres?`", "every scan labelled");
+}
+
+TEST_F(FaultsOfClouds, NoReturnsAtTheLargestRange) {
+  load();
+  std::vector<Eigen::Vector3f> echoes = ring_;
+  for (const Eigen::Vector3f& end : test::ring(100, 100.0F)) echoes.push_back(end);
+  drive(echoes, 5);
+  ASSERT_TRUE(waitFor([this] {
+    return diagnostic("beams without an echo").rfind("100 echoes at one largest", 0) == 0;
+  })) << diagnostic("beams without an echo");
+  conclude("beams without an echo written at the largest range; `beams without an echo` counts them",
+           "every scan labelled");
+}
+
+TEST_F(FaultsOfClouds, NoReturnsAtTheSensorOfAMovedCloud) {
+  ros::param::set(nodeName() + "/origin_z", 1.7);
+  usePapersRule(nodeName());
+  load();
+  std::vector<Eigen::Vector3f> echoes = ring_;
+  echoes.insert(echoes.end(), 100, Eigen::Vector3f::Zero());
+  for (Eigen::Vector3f& echo : echoes) echo.z() += 1.7F;
+  drive(echoes, 10, "base_link");
+  EXPECT_EQ(dynamicEchoes(), 0);
+  conclude("beams without an echo at 0, 0, 0, moved into the vehicle's frame with the cloud", "none is dynamic");
+}
+
+TEST_F(FaultsOfClouds, TwoSourcesOfOdometry) {
+  load();
+  for (int scan = 0; scan < 10; ++scan) {
+    advance();
+    sendOdometry(now_);
+    auto other = boost::make_shared<nav_msgs::Odometry>(test::odometryAt(now_, 5.0));
+    other->header.frame_id = "map";
+    odometry_.publish(other);
+    sendCloud(now_);
+  }
+  ASSERT_TRUE(waitForLabeled(10)) << status_;
+  ASSERT_TRUE(waitFor([this] { return diagnostic("last odometry refused").find("two sources") != std::string::npos; }));
+  conclude("two publishers of odometry in different frames: that of `fixed_frame` and `base_frame` is used",
+           "every scan labelled");
+}
+
+TEST_F(FaultsOfClouds, LatchedTfIsLost) {
+  // Says nothing to the first subscriber, as if the message had been lost, and tells every later one.
+  tf2_msgs::TFMessage mounting;
+  mounting.transforms.push_back(test::transformAt(0.0, "base_link", "lidar_on_the_roof", 0.0, 2.0));
+  std::atomic<int> subscribers{0};
+  const ros::SubscriberStatusCallback connected = [&](const ros::SingleSubscriberPublisher& subscriber) {
+    if (++subscribers > 1) subscriber.publish(mounting);
+  };
+  const ros::Publisher tf = nh_.advertise<tf2_msgs::TFMessage>("/tf_static", 10, connected);
+  load();
+  ASSERT_TRUE(waitFor([&] { return subscribers == 1; }));
+  const auto isLabeled = [this] { return !received_.empty(); };
+  do {
+    advance();
+    sendOdometry(now_);
+    ++clouds_sent_;
+    clouds_.publish(test::plainCloud(test::ring(), now_, "lidar_on_the_roof"));
+    const bool is_over = waitFor(isLabeled, kPeriod);
+    if (is_over) break;
+  } while (clouds_sent_ < 3000);
+  ASSERT_TRUE(isLabeled()) << status_;
+  EXPECT_GE(subscribers, 2);
+  driveWell();
+  conclude("the latched `/tf_static` is lost: tf is subscribed to anew after 5 s");
+}
+
+}  // namespace
+}  // namespace donex
