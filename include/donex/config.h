@@ -68,6 +68,15 @@ struct EvidenceConfig {
   bool any() const { return free_evidence || careful_sight || birth_age || neighbourhood || ground; }
 };
 
+/// The vehicle's own body (algorithm: "The own body"): found by itself, and a box in the vehicle frame [m], empty by
+/// default.
+struct SelfConfig {
+  bool detection = true;
+  double x_min = 0.0, x_max = 0.0;
+  double y_min = 0.0, y_max = 0.0;
+  double z_min = 0.0, z_max = 0.0;
+};
+
 /// Connected echoes are judged together and followed over time.
 struct ObjectConfig {
   bool enabled = true;
@@ -121,6 +130,7 @@ struct Config {
   int memory_limit = 1000;  // [MB]
   int threads = 1;
   EvidenceConfig evidence;
+  SelfConfig self;
   ObjectConfig objects;
   MotionConfig motion;
   CloudConfig cloud;

@@ -18,13 +18,14 @@ enum class EchoReason : std::uint8_t {
   kSettled,     ///< static: the place has been occupied for longer, or belongs to a surface that has
   kNewAlone,    ///< static: the place was free before, but what stands there is no moving object
   kMoving,      ///< dynamic
+  kOwnBody,     ///< static: the vehicle itself
 };
-constexpr std::size_t kEchoReasons = 7;
+constexpr std::size_t kEchoReasons = 8;
 
 inline const char* describe(EchoReason reason) {
   constexpr std::array<const char*, kEchoReasons> kWords{"no echo",         "outside the grid",    "ground",
                                                          "never seen free", "occupied for longer", "new, but no object",
-                                                         "moving"};
+                                                         "moving",          "own body"};
   return kWords[static_cast<std::size_t>(reason)];
 }
 

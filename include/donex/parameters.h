@@ -11,10 +11,10 @@
 namespace donex {
 
 /// Parameters that are shown together.
-enum class ParameterGroup { kClassifier, kRegion, kEvidence, kObjects, kMotion, kClouds, kNode };
+enum class ParameterGroup { kClassifier, kRegion, kEvidence, kBody, kObjects, kMotion, kClouds, kNode };
 
 inline const char* nameOf(ParameterGroup group) {
-  constexpr const char* kNames[] = {"Classifier", "Region", "Evidence", "Objects", "Motion", "Clouds", "Node"};
+  constexpr const char* kNames[] = {"Classifier", "Region", "Evidence", "Body", "Objects", "Motion", "Clouds", "Node"};
   return kNames[static_cast<std::size_t>(group)];
 }
 
@@ -88,6 +88,20 @@ void visitEvidence(EvidenceConfig& e, Visitor& visit) {
   visit(ParameterInfo{"ground", "", "echoes on the local ground are never dynamic", true}, e.ground);
   visit(ParameterInfo{"ground_clearance", "m", "height above the local ground below which an echo is ground", true},
         e.ground_clearance, 0.0, 2.0);
+}
+
+template <class Visitor>
+void visitSelf(SelfConfig& s, Visitor& visit) {
+  visit(ParameterInfo{"self_detection", "",
+                      "echoes that stay near the sensor while the vehicle moves are its own body: never dynamic", true},
+        s.detection);
+  visit(ParameterInfo{"self_x_min", "m", "box of the own body, vehicle frame, rear; empty where min equals max", false},
+        s.x_min, -100.0, 100.0);
+  visit(ParameterInfo{"self_x_max", "m", "box of the own body, vehicle frame, front", false}, s.x_max, -100.0, 100.0);
+  visit(ParameterInfo{"self_y_min", "m", "box of the own body, vehicle frame, right", false}, s.y_min, -100.0, 100.0);
+  visit(ParameterInfo{"self_y_max", "m", "box of the own body, vehicle frame, left", false}, s.y_max, -100.0, 100.0);
+  visit(ParameterInfo{"self_z_min", "m", "box of the own body, vehicle frame, bottom", false}, s.z_min, -100.0, 100.0);
+  visit(ParameterInfo{"self_z_max", "m", "box of the own body, vehicle frame, top", false}, s.z_max, -100.0, 100.0);
 }
 
 template <class Visitor>
@@ -196,11 +210,13 @@ template <class Visitor>
 void visitParameters(Config& config, Visitor&& visit) {
   const auto in = [&](ParameterGroup group) { return GroupVisitor<std::remove_reference_t<Visitor>>{group, visit}; };
   auto classifier = in(ParameterGroup::kClassifier), region = in(ParameterGroup::kRegion),
-       evidence = in(ParameterGroup::kEvidence), objects = in(ParameterGroup::kObjects),
-       motion = in(ParameterGroup::kMotion), clouds = in(ParameterGroup::kClouds), node = in(ParameterGroup::kNode);
+       evidence = in(ParameterGroup::kEvidence), body = in(ParameterGroup::kBody),
+       objects = in(ParameterGroup::kObjects), motion = in(ParameterGroup::kMotion),
+       clouds = in(ParameterGroup::kClouds), node = in(ParameterGroup::kNode);
   visitClassifier(config, classifier);
   visitRegion(config.region, region);
   visitEvidence(config.evidence, evidence);
+  visitSelf(config.self, body);
   visitObjects(config.objects, objects);
   visitMotion(config.motion, motion);
   visitCloud(config.cloud, clouds);

@@ -63,6 +63,16 @@ struct Collector {
   }
 };
 
+/// A box is given whole or not at all.
+void checkSelf(const SelfConfig& self, std::vector<std::string>& faults) {
+  const auto edges = {self.x_min, self.x_max, self.y_min, self.y_max, self.z_min, self.z_max};
+  const bool is_given = std::any_of(edges.begin(), edges.end(), [](double edge) { return edge != 0.0; });
+  const bool is_a_box = self.x_min < self.x_max && self.y_min < self.y_max && self.z_min < self.z_max;
+  if (is_given && !is_a_box) {
+    faults.emplace_back("self_x_min to self_z_max: each min must be less than its max, or all of them 0 for no box");
+  }
+}
+
 }  // namespace
 
 bool Config::hasEvidence() const {
@@ -112,6 +122,7 @@ std::vector<std::string> Config::faults() const {
   if (has_origin && !cloud.sensor_frame.empty()) {
     faults.emplace_back("sensor_frame and origin_x, origin_y, origin_z both say where the sensor is: set one of them");
   }
+  checkSelf(self, faults);
   return faults;
 }
 

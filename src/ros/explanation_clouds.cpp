@@ -46,6 +46,7 @@ std::uint32_t colourOf(EchoReason reason, float height) {
     case EchoReason::kUnobserved: return packed(45, 60, 110);
     case EchoReason::kOutside:
     case EchoReason::kNoEcho: return packed(40, 40, 40);
+    case EchoReason::kOwnBody:
     case EchoReason::kGround:
     case EchoReason::kSettled: break;
   }

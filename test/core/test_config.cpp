@@ -120,7 +120,7 @@ TEST(Config, ParametersOfAGroupStandTogether) {
   }
   const std::set<ParameterGroup> once(groups.begin(), groups.end());
   EXPECT_EQ(once.size(), groups.size());
-  EXPECT_EQ(once.size(), 7U);
+  EXPECT_EQ(once.size(), 8U);
 }
 
 struct Names {

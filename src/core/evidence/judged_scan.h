@@ -21,7 +21,7 @@ inline bool isNewPlace(Place place) { return place == Place::kNew || place == Pl
 
 /// How an echo takes part in clusters.
 enum class ClusterRole : std::uint8_t {
-  kNone,      ///< in none: on the ground, too high, outside the grid, no echo
+  kNone,      ///< in none: on the ground, too high, outside the grid, no solid echo
   kConnects,  ///< connects what it touches
   kFollows,   ///< near the ground: belongs to what stands right above it, connects nothing
 };
@@ -33,8 +33,9 @@ struct JudgedScan {
   Eigen::Vector3f sensor = Eigen::Vector3f::Zero();
   std::vector<Eigen::Vector3f> points;  ///< NaN where the echo is none
   std::vector<std::uint8_t> is_echo;
-  std::vector<float> heights;  ///< above the local ground [m]
-  bool has_ground = true;      ///< otherwise heights are above the window's lowest corner
+  std::vector<std::uint8_t> is_solid;  ///< an echo that is not the own body's
+  std::vector<float> heights;          ///< above the local ground [m]
+  bool has_ground = true;              ///< otherwise heights are above the window's lowest corner
   std::vector<ClusterRole> roles;
   std::vector<Place> places;
 };

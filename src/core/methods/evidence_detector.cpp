@@ -3,6 +3,7 @@
 
 #include "core/evidence/ground.h"
 #include "core/evidence/newness.h"
+#include "core/evidence/own_body.h"
 #include "core/grid/storage.h"
 #include "core/methods/detectors.h"
 #include "core/methods/evidence_explanation.h"
@@ -39,6 +40,7 @@ class EvidenceDetector : public Detector {
         places_(config.scrolling()),  // births are times, which resampling would blur
         clock_(config.evidence.birth_age ? config.evidence.birth_window : 0.0),
         sights_(historyOf(config.evidence, options_)),
+        own_body_(config.self),
         ground_(reachOf(config.region)),
         segmenter_(reachOf(config.region), config.objects),
         tracker_(config.objects),
@@ -49,12 +51,14 @@ class EvidenceDetector : public Detector {
     places_.shift(scan.odom_from_base);        // voxel shift (paper, "Ego motion")
     places_.window().enter(scan, in_voxels_);  // every frame once: in voxels,
     enterPoints(scan.stamp);                   // in metres, and what lies between them and the odometry
-    const TurnPart part = sights_.arrive(scan, judged_.is_echo);
+    leaveOutTheBody(scan);
+    const TurnPart part = sights_.arrive(scan, judged_.is_solid);
     if (part != TurnPart::kContinuing) clock_.begin(scan.stamp);
     heightsAboveGround(part);
+    own_body_.learn(part, scan, judged_.is_echo, judged_.heights, clearance());
     const SightView before = sights_.seenBefore(judged_.odom_from_points);
     judgePlaces(before);
-    sights_.add(scan, judged_.is_echo);
+    sights_.add(scan, judged_.is_solid);
     const ScanSight now = sights_.newestSeenFrom(judged_.odom_from_points);
     if (config_.objects.enabled) {
       tracker_.predict(scan.stamp, predictions_);
@@ -72,6 +76,7 @@ class EvidenceDetector : public Detector {
     guard_.reset();
     clock_.reset();
     sights_.reset();
+    own_body_.reset();
     tracker_.reset();
     proofs_.clear();
   }
@@ -97,11 +102,12 @@ class EvidenceDetector : public Detector {
     const std::size_t in_grid = in_voxels_.echoes.capacity() * sizeof(Eigen::Vector3f) + in_voxels_.inside.capacity();
     const std::size_t judged = judged_.points.capacity() * sizeof(Eigen::Vector3f) +
                                judged_.heights.capacity() * sizeof(float) + judged_.is_echo.capacity() +
-                               judged_.roles.capacity() + judged_.places.capacity() + proofs_.capacity();
+                               judged_.is_solid.capacity() + judged_.roles.capacity() + judged_.places.capacity() +
+                               proofs_.capacity();
     const std::size_t decided =
         segments_.memoryBytes() + predictions_.capacity() * sizeof(Prediction) + verdicts_.capacity() * sizeof(Verdict);
-    return in_grid + judged + decided + places_.memoryBytes() + sights_.memoryBytes() + ground_.memoryBytes() +
-           segmenter_.memoryBytes() + trimmer_.memoryBytes() + tracker_.memoryBytes();
+    return in_grid + judged + decided + places_.memoryBytes() + sights_.memoryBytes() + own_body_.memoryBytes() +
+           ground_.memoryBytes() + segmenter_.memoryBytes() + trimmer_.memoryBytes() + tracker_.memoryBytes();
   }
 
  private:
@@ -129,18 +135,26 @@ class EvidenceDetector : public Detector {
            static_cast<double>(beneath) > options_.most_beneath * on;
   }
 
+  float clearance() const { return static_cast<float>(config_.evidence.ground_clearance); }
+
+  /// The own body takes part in nothing.
+  void leaveOutTheBody(const Scan& scan) {
+    resizeTo(judged_.is_solid, judged_.is_echo.size());
+    std::copy(judged_.is_echo.begin(), judged_.is_echo.end(), judged_.is_solid.begin());
+    own_body_.leaveOut(scan, judged_.is_solid);
+  }
+
   /// Ground: the height of every echo, and so its role in clusters.
   void heightsAboveGround(TurnPart part) {
     const bool enabled = config_.evidence.ground;
-    const auto clearance = static_cast<float>(config_.evidence.ground_clearance);
     judged_.has_ground = enabled;
     resizeTo(judged_.heights, judged_.points.size());
     if (enabled) {
-      ground_.estimate(part, judged_.odom_from_points.translation(), judged_.sensor, judged_.points, judged_.is_echo);
+      ground_.estimate(part, judged_.odom_from_points.translation(), judged_.sensor, judged_.points, judged_.is_solid);
       ground_.heightsOf(judged_.points, judged_.heights);
       lacks_ground_ = isGroundMissing();
       if (lacks_ground_) {
-        for (float& height : judged_.heights) height += clearance;  // nothing is on the ground
+        for (float& height : judged_.heights) height += clearance();  // nothing is on the ground
       }
     }
     judged_.roles.assign(judged_.points.size(), ClusterRole::kNone);
@@ -148,8 +162,8 @@ class EvidenceDetector : public Detector {
       // Without the step there is no ground to stand above: heights are the window's.
       if (!enabled) judged_.heights[i] = judged_.points[i].z();
       const float height = judged_.heights[i];
-      if (in_voxels_.inside[i] == 0) continue;
-      const bool is_above = !enabled || lacks_ground_ || height > clearance;
+      if (in_voxels_.inside[i] == 0 || judged_.is_solid[i] == 0) continue;
+      const bool is_above = !enabled || lacks_ground_ || height > clearance();
       if (is_above) {
         judged_.roles[i] = ClusterRole::kConnects;
       } else if (height > options_.lowest_of_objects) {
@@ -198,6 +212,7 @@ class EvidenceDetector : public Detector {
   PlaceJudge places_;
   ScanClock clock_;
   SightHistory sights_;
+  OwnBody own_body_;
   Ground ground_;
   Segmenter segmenter_;
   ObjectTracker tracker_;
@@ -224,7 +239,7 @@ std::unique_ptr<Detector> makeEvidenceDetector2d(const Config& config) {
 
 double evidenceBytes(const Config& config, double echoes) {
   constexpr double kInGrid = sizeof(Eigen::Vector3f) + 1.0;  // place and inside
-  constexpr double kJudged = sizeof(Eigen::Vector3f) + sizeof(float) + 1.0;
+  constexpr double kJudged = sizeof(Eigen::Vector3f) + sizeof(float) + 2.0;
   constexpr double kDecided = sizeof(ClusterRole) + sizeof(Place) + sizeof(Proof);
   constexpr double kObjects = 20.0;  // bytes per echo, about: segments, tracks and their traces
   const double reach = reachOf(config.region);
@@ -232,6 +247,7 @@ double evidenceBytes(const Config& config, double echoes) {
   double bytes = roomFor((kInGrid + kJudged) * echoes) + kDecided * echoes;
   bytes += config.method == Method::kDonex2d ? Newness2d::bytesFor(extent) : Newness3d::bytesFor(extent);
   bytes += SightHistory::bytesFor(config.evidence.history_length, EvidenceDetectorOptions().history_spacing, echoes);
+  bytes += OwnBody::bytesFor(config.self);
   bytes += Ground::bytesFor(reach, echoes);
   bytes += Segmenter::bytesFor(reach, config.objects, echoes) + Trimmer::bytesFor(reach, config.objects, echoes);
   return bytes + kObjects * echoes;

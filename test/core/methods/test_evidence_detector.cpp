@@ -136,6 +136,29 @@ TEST_P(BothGrids, EchoesOutsideTheRegionAreNeverDynamic) {
   EXPECT_GT(outside, 1000U);
 }
 
+TEST_P(BothGrids, TheOwnBodyDoesNotMove) {
+  constexpr std::size_t kWarmUp = 6;  // until the own body is known
+  simulation::DisturbanceOptions disturbance;
+  disturbance.own_body = true;
+  const std::vector<TrueScan> drive = simulatedDrive("street", 32, 14, 1, disturbance);
+  const auto countMoving = [&](const Config& config) {
+    std::size_t moving = 0;
+    const auto labels = labelsOf(config, drive);
+    for (std::size_t k = kWarmUp; k < drive.size(); ++k) {
+      for (std::size_t i = 0; i < drive[k].truth.size(); ++i) {
+        const bool is_matter = drive[k].truth[i] == simulation::Disturbance::kDisturbed;
+        moving += is_matter && labels[k].dynamic[i] != 0 ? 1U : 0U;
+      }
+    }
+    return moving;
+  };
+  Config off = config();
+  off.self.detection = false;
+  const std::size_t before = countMoving(off);
+  EXPECT_GT(before, 50U) << "nothing to do";
+  EXPECT_LT(countMoving(config()), before / 5);
+}
+
 TEST_P(BothGrids, EmptyScansAreScans) {
   const auto detector = makeDetector(config());
   EchoLabels labels;
