@@ -72,6 +72,7 @@ class Labeler {
 };
 
 PipelineEvents Labeler::events() {
+  const auto as = [this](const char* kind) { return [this, kind](const std::string& text) { remark(kind, text); }; };
   PipelineEvents events;
   events.labeled = [this](const LabeledScan& scan) { take(scan); };
   events.dropped = [this](DropReason reason, const std::string& text) {
@@ -80,14 +81,16 @@ PipelineEvents Labeler::events() {
   events.refused = [this](OdometryRefusal reason, const std::string& text) {
     remark(fmt::format("odometry refused, {}", describe(reason)), text);
   };
-  events.forgotten = [this](const std::string& text) { remark("grid forgotten", text); };
+  events.forgotten = as("grid forgotten");
   events.flooded = [this](const std::string& text) {
     remark("alarm", text + (check_ ? ", " + describe(check_->finding()) : ""));
   };
-  events.strange_origin = [this](const std::string& text) { remark("origin of the clouds", text); };
-  events.unit_found = [this](const std::string& text) { remark("echo times", text); };
+  events.strange_origin = as("origin of the clouds");
+  events.unit_found = as("echo times");
+  events.reading_found = as("meaning of the echo times");
+  events.not_deskewed = as("clouds de-skewed by");
   events.remarked = [this](CloudRemark kind, const std::string& text) { remark(describe(kind), text); };
-  events.strange_times = [this](const std::string& text) { remark("clouds not de-skewed", text); };
+  events.strange_times = as("clouds not de-skewed");
   return events;
 }
 
@@ -165,8 +168,7 @@ std::string whyOf(OdometrySource source, const std::string& frames) {
   switch (source) {
     case OdometrySource::kPose: return " (chosen: the bag holds odometry; otherwise set odometry_source)";
     case OdometrySource::kTf:
-      return " (chosen: the bag holds no nav_msgs/Odometry, and its tf knows these frames; otherwise set "
-             "odometry_source)";
+      return " (chosen: the bag holds no nav_msgs/Odometry, its tf knows these frames; otherwise set odometry_source)";
     default:
       return fmt::format(
           " (chosen: the bag holds no nav_msgs/Odometry, and its tf does not know {}; otherwise set fixed_frame and "
@@ -218,11 +220,9 @@ LabelBagOptions chosenMotion(const LabelBagOptions& options, rosbag::View& view,
   OdometrySource& source = chosen.config.motion.source;
   if (source != OdometrySource::kAuto) return chosen;
   const bool has_odometry = !options.odom.empty() || hasTopicOf(view, "nav_msgs/Odometry");
-  if (has_odometry) {
-    source = OdometrySource::kPose;
-  } else {
+  source = OdometrySource::kPose;
+  if (!has_odometry)
     source = tellsMotionByTf(bags, chosen.config.motion) ? OdometrySource::kTf : OdometrySource::kLidar;
-  }
   return chosen;
 }
 

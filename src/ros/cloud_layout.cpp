@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <limits>
 #include <sstream>
 
@@ -99,6 +100,7 @@ constexpr std::array<KnownTime, 4> kKnownTimes{{
 std::optional<TimeEncoding> usualEncoding(std::uint8_t datatype) {
   switch (datatype) {
     case PointField::FLOAT32: return TimeEncoding::kRelativeSeconds;
+    case PointField::INT32:
     case PointField::UINT32: return TimeEncoding::kRelativeNanoseconds;
     case PointField::FLOAT64: return TimeEncoding::kAuto;
     default: return std::nullopt;
@@ -111,7 +113,23 @@ std::optional<TimeField> configuredTime(const PointCloud2& cloud, const CloudCon
   const auto usual = usualEncoding(field->datatype);
   if (!usual) return std::nullopt;
   const bool is_told = config.time_encoding != TimeEncoding::kAuto;
-  return TimeField{{field->offset, field->datatype}, is_told ? config.time_encoding : *usual, is_told, {}};
+  return TimeField{{field->offset, field->datatype}, is_told ? config.time_encoding : *usual, is_told, {}, field->name};
+}
+
+bool looksLikeTime(std::string name) {
+  for (char& letter : name) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  const auto holds = [&](const char* word) { return name.find(word) != std::string::npos; };
+  return name == "t" || name == "ts" || name == "dt" || holds("time") || holds("stamp") || holds("offset_ns");
+}
+
+/// Of a driver that nobody knows.
+std::optional<TimeField> guessedTime(const PointCloud2& cloud) {
+  for (const PointField& field : cloud.fields) {
+    const auto usual = usualEncoding(field.datatype);
+    const bool usable = usual && looksLikeTime(field.name) && fits(field, cloud.point_step);
+    if (usable) return TimeField{{field.offset, field.datatype}, *usual, false, {}, field.name, true};
+  }
+  return std::nullopt;
 }
 
 std::optional<TimeField> findTime(const PointCloud2& cloud, const CloudConfig& config) {
@@ -119,9 +137,9 @@ std::optional<TimeField> findTime(const PointCloud2& cloud, const CloudConfig& c
   for (const KnownTime& known : kKnownTimes) {
     const PointField* field = findField(cloud, known.name);
     const bool usable = field != nullptr && field->datatype == known.datatype && fits(*field, cloud.point_step);
-    if (usable) return TimeField{{field->offset, field->datatype}, known.encoding, false, {}};
+    if (usable) return TimeField{{field->offset, field->datatype}, known.encoding, false, {}, field->name};
   }
-  return std::nullopt;
+  return guessedTime(cloud);
 }
 
 /// Multiple of `alignment` from `size` upwards.
@@ -157,6 +175,12 @@ MaybeError placeLabels(const PointCloud2& cloud, CloudLayout& layout) {
 }
 
 }  // namespace
+
+std::string fieldNames(const PointCloud2& cloud) {
+  std::string names;
+  for (const PointField& field : cloud.fields) names += (names.empty() ? "" : " ") + field.name;
+  return names;
+}
 
 LayoutVerdict judgeLayout(const PointCloud2& cloud, const CloudConfig& config) {
   CloudLayout layout;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <variant>
@@ -37,12 +38,16 @@ struct FieldPosition {
 
 /// Where an echo's own time is. Without a configured field: FLOAT32 `time` (Velodyne: relative_s), UINT32 `t`
 /// (Ouster) and `offset_time` (Livox: relative_ns), FLOAT64 `timestamp` (Hesai, RoboSense: absolute, in seconds;
-/// Livox: absolute, in nanoseconds).
+/// Livox: absolute, in nanoseconds); else the first field whose name looks like a time.
 struct TimeField {
   FieldPosition position;
   TimeEncoding encoding = TimeEncoding::kAuto;  ///< kAuto: absolute, the unit told by its magnitude
   bool is_told = false;                         ///< the configuration names the encoding
   std::optional<double> unit;  ///< what one written unit is [s], where it is not the encoding's (TimeUnit)
+  std::string name;
+  bool is_guess = false;  ///< the name only looks like a time: of use where a unit makes it one (TimeUnit)
+  /// As written: what lies beyond is no time of the scan, and taken for the nearest that is (TimeUnit).
+  double least = -std::numeric_limits<double>::infinity(), most = std::numeric_limits<double>::infinity();
 };
 
 /// A readable cloud: every offset below lies within the data, for every echo.
@@ -68,5 +73,8 @@ using LayoutVerdict = std::variant<CloudLayout, LayoutError>;
 /// Judges the whole layout; allocates no memory in proportion to what the cloud claims. A cloud without
 /// echoes is readable when its fields are (point_step and data do not matter then).
 LayoutVerdict judgeLayout(const sensor_msgs::PointCloud2& cloud, const CloudConfig& config = {});
+
+/// The names of all fields, for messages: "x y z intensity".
+std::string fieldNames(const sensor_msgs::PointCloud2& cloud);
 
 }  // namespace donex

@@ -70,15 +70,18 @@ const char* describe(CloudRemark remark) {
   switch (remark) {
     case CloudRemark::kNoReturns: return "beams without an echo";
     case CloudRemark::kRegionMissed: return "hardly an echo in the region";
+    case CloudRemark::kWildTimes: return "echo times outside of the scan";
     case CloudRemark::kNoGround: return "no ground found";
   }
   return "unknown";
 }
 
-CloudRemarks remarksOn(const Scan& scan, const NoReturns& no_returns, const Region& region, bool lacks_ground) {
+CloudRemarks remarksOn(const Scan& scan, const NoReturns& no_returns, const Region& region, std::size_t wild_times,
+                       bool lacks_ground) {
+  const std::string wild = wild_times == 0 ? "" : textOf("%zu, taken for the scan's nearest end", wild_times);
   const char* ground =
       lacks_ground ? "hardly an echo lies on it: it was removed beforehand, or the sensor does not see it" : "";
-  return {noReturns(no_returns), regionMissed(scan, region), ground};
+  return {noReturns(no_returns), regionMissed(scan, region), wild, ground};
 }
 
 }  // namespace donex

@@ -14,9 +14,10 @@ namespace donex {
 enum class CloudRemark {
   kNoReturns,     ///< positions were written for beams without an echo
   kRegionMissed,  ///< hardly an echo lies in the region
+  kWildTimes,     ///< single echoes' times lie outside of the scan
   kNoGround,      ///< somebody has removed it, or the sensor does not see it
 };
-constexpr std::size_t kCloudRemarks = 3;
+constexpr std::size_t kCloudRemarks = 4;
 
 /// In words, fit for a key of the diagnostics.
 const char* describe(CloudRemark remark);
@@ -29,6 +30,7 @@ inline const std::string& remarkOf(const CloudRemarks& remarks, CloudRemark kind
 }
 
 /// `no_returns` as they were found before the scan was de-skewed.
-CloudRemarks remarksOn(const Scan& scan, const NoReturns& no_returns, const Region& region, bool lacks_ground);
+CloudRemarks remarksOn(const Scan& scan, const NoReturns& no_returns, const Region& region, std::size_t wild_times,
+                       bool lacks_ground);
 
 }  // namespace donex

@@ -98,6 +98,8 @@ class TimeReader {
       : offset_(field.position.offset),
         datatype_(field.position.datatype),
         swap_(swap),
+        least_(field.least),
+        most_(field.most),
         unit_by_magnitude_(field.encoding == TimeEncoding::kAuto) {
     switch (field.encoding) {
       case TimeEncoding::kRelativeSeconds: break;
@@ -111,12 +113,13 @@ class TimeReader {
   }
 
   /// After the stamp [s].
-  double operator()(const std::uint8_t* point) const {
-    const double written = this->written(point);
-    // Livox writes `timestamp` in nanoseconds, the others in seconds: no clock has seen 10^14 s.
-    const bool is_nanoseconds = unit_by_magnitude_ && std::abs(written) > 1e14;
+  double afterStamp(double written) const {
+    const bool is_nanoseconds = unit_by_magnitude_ && std::abs(written) > kSecondsOfNoClock;
     return (is_nanoseconds ? 1e-9 : scale_) * written - origin_;
   }
+
+  /// The nearest that may be a time of the scan; of NaN the least.
+  double within(double written) const { return std::min(std::max(least_, written), most_); }
 
   /// In no unit yet.
   double written(const std::uint8_t* point) const { return number(point + offset_); }
@@ -126,13 +129,16 @@ class TimeReader {
     switch (datatype_) {
       case PointField::FLOAT32: return static_cast<double>(readFloat(at, swap_));
       case PointField::UINT32: return read<std::uint32_t, std::uint32_t>(at, swap_);
+      case PointField::INT32: return read<std::int32_t, std::uint32_t>(at, swap_);
       default: return readDouble(at, swap_);
     }
   }
 
   std::uint32_t offset_;
   std::uint8_t datatype_;
-  bool swap_, unit_by_magnitude_;
+  bool swap_;
+  double least_, most_;  // as written
+  bool unit_by_magnitude_;
   double scale_ = 1.0, origin_ = 0.0;  // [s a unit], [s]
 };
 
@@ -179,6 +185,7 @@ void addLabelField(PointCloud2& cloud, const char* name, std::uint32_t offset, s
 void EchoTimes::clear() {
   after_stamp.clear();
   first = last = 0.0;
+  wild = 0;
   problem.clear();
 }
 
@@ -195,15 +202,18 @@ void parseEchoes(const PointCloud2& cloud, const CloudLayout& layout, std::vecto
     return parseEchoes(cloud, layout, echoes);
   }
   times.problem.clear();
+  times.wild = 0;
   echoes.resize(layout.echoes());
   times.after_stamp.resize(layout.echoes());
   const TimeReader time_of(*layout.time, cloud.header.stamp.toSec(), layout.swap_bytes);
   double first = std::numeric_limits<double>::infinity(), last = -first, strange = 0.0;
   forEachEcho(cloud, layout, [&](std::size_t i, const Eigen::Vector3f& echo, const std::uint8_t* point) {
-    const double time = time_of(point);
+    const double written = time_of.written(point), within = time_of.within(written);
+    const double time = time_of.afterStamp(within);
     echoes[i] = echo;
     times.after_stamp[i] = toFloat(time);
     if (!echo.allFinite()) return;
+    times.wild += within == written ? 0U : 1U;
     const bool plausible = std::abs(time) <= kMaxScanDuration;
     if (!plausible) strange = time;
     first = std::min(first, time);

@@ -21,6 +21,7 @@ void parseEchoes(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layou
 struct EchoTimes {
   std::vector<float> after_stamp;  ///< after the cloud's stamp [s], one per echo; negative before it
   double first = 0.0, last = 0.0;  ///< the span of the times of echoes with finite coordinates [s]
+  std::size_t wild = 0;  ///< echoes whose times were none of the scan's, and were taken for the nearest that is
   std::string problem;  ///< why the cloud's times cannot be used; empty where they can, or where the cloud has no times
 
   bool empty() const { return after_stamp.empty(); }
@@ -30,6 +31,10 @@ struct EchoTimes {
 
 /// A scan takes less than this; times further from the stamp belong to another clock [s].
 constexpr double kMaxScanDuration = 1.0;
+
+/// Absolute times beyond are nanoseconds, as Livox writes `timestamp`; the others' are seconds: no clock has seen so
+/// many.
+constexpr double kSecondsOfNoClock = 1e14;
 
 /// Echoes and their times in one pass, into memory that is kept from scan to scan. No times where the cloud has none,
 /// or where they cannot be times of this scan (another clock than the stamp's, not finite).

@@ -184,6 +184,7 @@ void Diagnostics::addCounts(DiagnosticStatusWrapper& status) const {
     status.add(describe(kind), remarkOf(pipeline_.remarks(), kind));
   }
   status.add("last drop", last_drop_);
+  status.add("de-skewed by", pipeline_.deskewedBy());
   status.add("unit of the echo times", found_unit_);
   status.add("last echo times not used", last_strange_times_);
   if (!strange_origin_.empty()) status.add("origin of the clouds", strange_origin_);

@@ -237,6 +237,10 @@ PipelineEvents DonexNode::Implementation::events() {
     ROS_WARN_STREAM_NAMED("donex", text);
     diagnostics_.unitFound(text);
   };
+  events.not_deskewed = [](const std::string& text) {
+    ROS_WARN_STREAM_NAMED("donex", "clouds are de-skewed by " << text);
+  };
+  events.reading_found = [](const std::string& text) { ROS_WARN_STREAM_NAMED("donex", text); };
   events.strange_times = [this](const std::string& text) {
     ROS_WARN_STREAM_THROTTLE_NAMED(kLogPeriod, "donex", text);
     diagnostics_.strangeTimes(text);

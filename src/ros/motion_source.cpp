@@ -271,7 +271,9 @@ MotionAnswer MotionSource::fromOdometry(const ScanTimes& times, const std::strin
   const double lag = last - odometry_.newestStamp();
   if (lag > kTimeRounding && (!settle || lag > config_.max_extrapolation)) {
     return MotionMissing{DropReason::kNoOdometry,
-                         textOf("the newest odometry is ", lag, " s older than the cloud of ", stamp, " s"), true};
+                         textOf("the newest odometry is ", lag, " s older than the last echo of the cloud of ", stamp,
+                                " s, ", times.last, " s after its stamp"),
+                         true};
   }
   for (const double moment : {stamp + times.first, last, stamp}) {
     const auto pose = odometry_.poseAt(moment);

@@ -30,7 +30,8 @@ Pipeline::Pipeline(const Config& config, const tf2::BufferCore& tf, PipelineEven
       events_(std::move(events)),
       motion_(config.motion, tf),
       placer_(config, tf),
-      detector_(std::move(detector)) {}
+      detector_(std::move(detector)),
+      clock_(config) {}
 
 void Pipeline::addCloud(const sensor_msgs::PointCloud2ConstPtr& cloud, double now) {
   ++counts_.clouds_in;
@@ -46,10 +47,21 @@ void Pipeline::addCloud(const sensor_msgs::PointCloud2ConstPtr& cloud, double no
 }
 
 /// A cloud that waits has perhaps been read in the unit before: it is read again.
-void Pipeline::observeTimes(const WaitingCloud& waiting) {
-  if (!deskews() || !time_unit_.observe(*waiting.cloud, waiting.layout)) return;
+void Pipeline::observeTimes(WaitingCloud& waiting) {
+  if (!clock_.observe(*waiting.cloud, waiting.layout)) return;
   parsed_ = 0;
-  if (!time_unit_.finding().empty() && events_.unit_found) events_.unit_found(time_unit_.finding());
+  if (!clock_.unitFinding().empty() && events_.unit_found) events_.unit_found(clock_.unitFinding());
+}
+
+/// What the grid remembers was placed by times that meant something else.
+void Pipeline::followTimes(const ScanMotion& motion) {
+  const bool is_told = !motion.tracked && !motion.sensor_from_cloud;
+  if (!is_told || !clock_.follow(scan_.stamp, motion.odom_from_base * motion.base_from_sensor)) return;
+  parsed_ = 0;
+  if (events_.reading_found) events_.reading_found(clock_.readingFinding());
+  if (needsWholeDrive(config_.method)) return;
+  reset();
+  events_.forgotten("the meaning of the echoes' times has been found: the grid is forgotten");
 }
 
 void Pipeline::place(WaitingCloud cloud) {
@@ -173,14 +185,7 @@ MotionAnswer Pipeline::motionOf(const WaitingCloud& waiting, bool settle) {
 void Pipeline::parse(const WaitingCloud& waiting) {
   if (parsed_ == waiting.number) return;
   const auto start = std::chrono::steady_clock::now();
-  if (deskews()) {
-    CloudLayout layout = waiting.layout;
-    time_unit_.apply(layout);
-    parseEchoes(*waiting.cloud, layout, scan_.echoes, times_);
-  } else {
-    times_.clear();
-    parseEchoes(*waiting.cloud, waiting.layout, scan_.echoes);
-  }
+  clock_.read(*waiting.cloud, waiting.layout, scan_.echoes, times_);
   no_returns_ = removeNoReturns(origin().cast<float>(), scan_.echoes);
   parsed_ = waiting.number;
   parsing_time_ = secondsSince(start);
@@ -213,7 +218,8 @@ void Pipeline::label(const WaitingCloud& waiting, const ScanMotion& motion) {
   last_labeled_ = stamp;
   events_.labeled({waiting.cloud, waiting.layout, scan_, labels_, *detector_, motion.odom_frame, motion,
                    waiting.received, parsing_time_ + secondsSince(start)});
-  tellStrangeTimes(waiting);
+  tellStrangeTimes();
+  followTimes(motion);
 }
 
 /// Of a motion that is found in the clouds: what it says of itself.
@@ -241,17 +247,12 @@ void Pipeline::followOdometry(const ScanMotion& motion) {
                     cloudOf(ros::Time(scan_.stamp)) + ": the grid is forgotten");
 }
 
-bool Pipeline::deskews() const { return config_.motion.deskew && config_.motion.source != OdometrySource::kNone; }
-
-void Pipeline::tellStrangeTimes(const WaitingCloud& waiting) {
-  const std::string& wanted = config_.cloud.time_field;
-  const bool is_missing = deskews() && !wanted.empty() && !waiting.layout.time;
-  if (is_missing) {
-    events_.strange_times("the cloud has no field '" + wanted +
-                          "' with times (FLOAT32, FLOAT64 or UINT32): not de-skewed");
-  } else if (!times_.problem.empty()) {
-    events_.strange_times(times_.problem);
-  }
+void Pipeline::tellStrangeTimes() {
+  if (!times_.problem.empty()) return events_.strange_times(times_.problem);
+  if (clock_.lacksToldField()) return events_.strange_times(clock_.deskewedBy());
+  if (!clock_.lacksTimes() || clock_.deskewedBy() == told_lack_) return;
+  told_lack_ = clock_.deskewedBy();
+  if (events_.not_deskewed) events_.not_deskewed(told_lack_);
 }
 
 /// A cloud that somebody has moved into the vehicle's frame does not say where its sensor is.
@@ -292,7 +293,7 @@ void Pipeline::moveToOrigin() {
 void Pipeline::remark() {
   constexpr int kCertain = 10;  // scans in a row; a lorry alongside hides the ground for a few
   without_ground_ = detector_->lacksGround() ? std::min(without_ground_ + 1, kCertain) : 0;
-  remarks_ = remarksOn(scan_, no_returns_, config_.region, without_ground_ == kCertain);
+  remarks_ = remarksOn(scan_, no_returns_, config_.region, times_.wild, without_ground_ == kCertain);
   for (std::size_t kind = 0; kind < kCloudRemarks; ++kind) {
     const bool is_news = !remarks_[kind].empty() && !remarked_[kind];
     if (!is_news) continue;
@@ -308,6 +309,7 @@ void Pipeline::finish() {
 }
 
 void Pipeline::reset() {
+  clock_.reset();
   detector_->reset();
   flood_.reset();
 }

@@ -19,9 +19,9 @@
 #include "ros/cloud_remarks.h"
 #include "ros/conversions.h"
 #include "ros/drop_reason.h"
+#include "ros/echo_clock.h"
 #include "ros/flood_watch.h"
 #include "ros/motion_source.h"
-#include "ros/time_unit.h"
 
 namespace donex {
 
@@ -55,6 +55,10 @@ struct PipelineEvents {
   std::function<void(const std::string& text)> flooded = nullptr;
   /// The unit of the echoes' times, where it is not the usual one of their field; may be left empty.
   std::function<void(const std::string& text)> unit_found = nullptr;
+  /// The same of what these times count from, told by the scans; may be left empty.
+  std::function<void(const std::string& text)> reading_found = nullptr;
+  /// There is nothing to de-skew the clouds by, and why; when that changes; may be left empty.
+  std::function<void(const std::string& text)> not_deskewed = nullptr;
 };
 
 struct PipelineCounts {
@@ -104,6 +108,8 @@ class Pipeline {
   /// On the newest labelled cloud.
   const CloudRemarks& remarks() const { return remarks_; }
   const MotionSource& motion() const { return motion_; }
+  /// "times in 'time' ...", or "nothing: " and why.
+  const std::string& deskewedBy() const { return clock_.deskewedBy(); }
 
  private:
   struct WaitingCloud {
@@ -114,10 +120,10 @@ class Pipeline {
     std::chrono::steady_clock::time_point received;
   };
 
-  bool deskews() const;
   void parse(const WaitingCloud& waiting);
-  void observeTimes(const WaitingCloud& waiting);
-  void tellStrangeTimes(const WaitingCloud& waiting);
+  void observeTimes(WaitingCloud& waiting);
+  void followTimes(const ScanMotion& motion);
+  void tellStrangeTimes();
   void place(WaitingCloud cloud);
   void suspect(WaitingCloud cloud);
   void suspect(const nav_msgs::Odometry& odometry);
@@ -146,7 +152,8 @@ class Pipeline {
   int on_the_ground_ = 0;   // clouds in a row whose origin lies there
   int without_ground_ = 0;  // clouds in a row
   std::shared_ptr<Detector> detector_;
-  TimeUnit time_unit_;
+  EchoClock clock_;
+  std::string told_lack_;  // of times, as it was last told
   bool watched_ = false;
   PipelineCounts counts_;
   std::deque<WaitingCloud> waiting_;  // by stamp

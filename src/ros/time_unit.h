@@ -1,6 +1,8 @@
-// Which unit the times of a stream's echoes are in: drivers give one name and one datatype different units.
+// Which unit the times of a stream's echoes are in, and which of them are none of the scan's: drivers give one name and
+// one datatype different units.
 #pragma once
 
+#include <array>
 #include <deque>
 #include <optional>
 #include <string>
@@ -13,8 +15,9 @@
 namespace donex {
 
 /// Finds the unit of times that count from the stamp by comparing what they span within a cloud with the time between
-/// clouds. Judges again with every cloud; the usual unit stands unless another one fits and it does not. Nothing is
-/// judged where the configuration tells the encoding, nor for absolute times, whose magnitude tells.
+/// clouds; that of absolute ones by the stamp. Judges again with every cloud; the usual unit stands unless another one
+/// fits and it does not. No unit is judged where the configuration tells the encoding. A field whose name only looks
+/// like a time is one where some unit fits.
 class TimeUnit {
  public:
   struct Options {
@@ -35,19 +38,25 @@ class TimeUnit {
     double least_span_of_shares = 0.9;  ///< of the whole scan; the ends may be missing.
     /// Echoes whose times are looked at, evenly spread over the cloud; the outermost hundredths do not count.
     std::size_t sampled_echoes = 1000;
+    /// A time farther outside of what nearly all span, and of an interval, is wild; in shares of that span.
+    double wild_margin = 0.25;
+    double longest_scan = 1.0;  ///< absolute times lie nearer to the stamp [s]
   };
 
   TimeUnit() : TimeUnit(Options()) {}
   explicit TimeUnit(const Options& options) : options_(options) {}
 
-  /// Takes the clouds in the order of their arrival; true when the unit is another one than before.
-  bool observe(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout);
+  /// Takes the clouds in the order of their arrival; true when the unit is another one than before. Sets in `layout`
+  /// between which times the cloud was measured.
+  bool observe(const sensor_msgs::PointCloud2& cloud, CloudLayout& layout);
 
-  /// Sets the found unit in a layout of the same stream.
+  /// Sets the found unit in a layout of the same stream; removes a field that only looks like a time and is none.
   void apply(CloudLayout& layout) const;
 
   /// What was found, with the figures; empty while the unit is the usual one.
   const std::string& finding() const { return finding_; }
+  /// Fit to follow the field's name: "microseconds"; empty while the unit is the usual one.
+  std::string_view unit() const { return unit_ ? unit_->name : std::string_view(); }
 
  private:
   struct Span {
@@ -56,12 +65,17 @@ class TimeUnit {
   struct Unit {
     double seconds;
     std::string_view name;
+    bool is_absolute = false;
   };
+  static const std::array<Unit, 4>& units();
 
   std::optional<double> intervalUntil(double stamp);
   std::optional<Span> sampledSpan(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout) const;
-  std::optional<Unit> unusualUnit(const TimeField& field, const Span& span, double interval) const;
-  static std::string describe(const Unit& unit, const Span& span, double interval);
+  void bound(const Span& span, double interval, TimeField& field) const;
+  std::optional<Unit> absoluteUnit(const Span& span, double stamp) const;
+  std::optional<Unit> unusualUnit(const TimeField& field, const Span& span, double interval, double stamp) const;
+  std::optional<Unit> filledUnit(double length, double interval) const;
+  std::string describe(const Unit& unit, const Span& span, double interval) const;
 
   Options options_;
   std::optional<double> last_stamp_;  // [s]

@@ -107,6 +107,7 @@ class CloudBuilder {
       case PointField::FLOAT32: return put(to, static_cast<float>(value));
       case PointField::FLOAT64: return put(to, value);
       case PointField::UINT32: return put(to, static_cast<std::uint32_t>(value));
+      case PointField::INT32: return put(to, static_cast<std::int32_t>(value));
       case PointField::UINT16: return put(to, static_cast<std::uint16_t>(value));
       default: return put(to, static_cast<std::uint8_t>(value));
     }

@@ -92,7 +92,7 @@ class PipelineRig {
 
   tf2::BufferCore tf;
   std::vector<Labeled> labeled;
-  std::vector<std::string> drops, refusals, forgotten, strange_times, remarks;
+  std::vector<std::string> drops, refusals, forgotten, strange_times, not_deskewed, remarks;
   Pipeline pipeline;
 
  private:
@@ -106,6 +106,7 @@ class PipelineRig {
     events.refused = [this](OdometryRefusal, const std::string& text) { refusals.push_back(text); };
     events.forgotten = [this](const std::string& text) { forgotten.push_back(text); };
     events.strange_times = [this](const std::string& text) { strange_times.push_back(text); };
+    events.not_deskewed = [this](const std::string& text) { not_deskewed.push_back(text); };
     events.remarked = [this](CloudRemark, const std::string& text) { remarks.push_back(text); };
     return events;
   }

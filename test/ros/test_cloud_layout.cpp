@@ -144,9 +144,23 @@ TEST(CloudLayout, TimesByNameAndDatatype) {
   EXPECT_EQ(timeOf("t", PointField::UINT32)->encoding, TimeEncoding::kRelativeNanoseconds);
   EXPECT_EQ(timeOf("offset_time", PointField::UINT32)->encoding, TimeEncoding::kRelativeNanoseconds);
   EXPECT_EQ(timeOf("timestamp", PointField::FLOAT64)->encoding, TimeEncoding::kAuto);
-  EXPECT_FALSE(timeOf("time", PointField::UINT32));
-  EXPECT_FALSE(timeOf("t", PointField::FLOAT32));
+  EXPECT_FALSE(timeOf("time", PointField::FLOAT32)->is_guess);
   EXPECT_FALSE(timeOf("intensity", PointField::FLOAT32));
+}
+
+TEST(CloudLayout, FieldsThatLookLikeTimesAreGuesses) {
+  const auto timeOf = [](const std::string& name, std::uint8_t datatype) {
+    return layoutOf(*CloudBuilder().xyz().field(name, datatype).size(2).build()).time;
+  };
+  for (const char* name : {"time", "ts", "time_stamp", "time_offset_ns", "TimeOffset", "point_stamp"}) {
+    ASSERT_TRUE(timeOf(name, PointField::UINT32)) << name;
+    EXPECT_TRUE(timeOf(name, PointField::UINT32)->is_guess) << name;
+    EXPECT_EQ(timeOf(name, PointField::UINT32)->name, name);
+    EXPECT_FALSE(timeOf(name, PointField::UINT16)) << name;
+  }
+  for (const char* name : {"ring", "tag", "return_type", "intensity"}) {
+    EXPECT_FALSE(timeOf(name, PointField::UINT32)) << name;
+  }
 }
 
 TEST(CloudLayout, TimesOfAConfiguredField) {

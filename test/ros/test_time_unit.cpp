@@ -20,10 +20,18 @@ constexpr double kPeriod = 0.1;          // [s]
 constexpr double kSpeed = 10.0;          // [m/s]
 constexpr std::uint32_t kEchoes = 1000;  // a turn at 20 m
 
+constexpr std::uint32_t kWild = 7;  // the echo with a wild time
+
 struct Written {
   const char* name;
   std::uint8_t datatype;
-  double per_turn;  ///< what the time of the turn's end is written as
+  double per_turn;          ///< what the time of the turn's end is written as
+  double since_1970 = 0.0;  ///< units per second, where times are absolute
+  double wild = 0.0;        ///< as one echo's time is written; 0 for none
+
+  double at(double stamp, double share) const {
+    return since_1970 > 0.0 ? since_1970 * (stamp + share * kPeriod) : share * per_turn;
+  }
 };
 
 /// A turn of a sensor at `kSpeed` along x, whose echoes lie at 20 m straight ahead at the stamp.
@@ -31,8 +39,9 @@ boost::shared_ptr<sensor_msgs::PointCloud2> turn(const Written& written, double 
   auto cloud = CloudBuilder().stamp(stamp).xyz().field(written.name, written.datatype).size(kEchoes);
   for (std::uint32_t i = 0; i < kEchoes; ++i) {
     const double share = static_cast<double>(i) / kEchoes;
-    cloud.at(i, 20.0 - kSpeed * share * kPeriod, 0.0, 1.0).set(i, written.name, share * written.per_turn);
+    cloud.at(i, 20.0 - kSpeed * share * kPeriod, 0.0, 1.0).set(i, written.name, written.at(stamp, share));
   }
+  if (written.wild != 0.0) cloud.set(kWild, written.name, written.wild);
   return cloud.build();
 }
 
@@ -51,8 +60,9 @@ struct Drive {
   /// How far the echoes of the last cloud are from where they were at its stamp [m].
   double worst() const {
     double worst = 0.0;
-    for (const Eigen::Vector3f& echo : rig.labeled.back().echoes) {
-      worst = std::max(worst, std::abs(static_cast<double>(echo.x()) - 20.0));
+    const auto& echoes = rig.labeled.back().echoes;
+    for (std::size_t i = 0; i < echoes.size(); ++i) {
+      if (i != kWild) worst = std::max(worst, std::abs(static_cast<double>(echoes[i].x()) - 20.0));
     }
     return worst;
   }
@@ -69,13 +79,60 @@ TEST_P(Unit, IsFoundAndTheEchoesAreStraightened) {
   EXPECT_LT(drive.worst(), 1e-3) << "[m]; without de-skewing it is " << kSpeed * kPeriod;
 }
 
-INSTANTIATE_TEST_SUITE_P(OfDriversAndConverters, Unit,
-                         testing::Values(Written{"time", PointField::FLOAT32, 0.1},
-                                         Written{"time", PointField::FLOAT32, 1.0},
-                                         Written{"time", PointField::FLOAT32, 1e2},
-                                         Written{"time", PointField::FLOAT32, 1e5},
-                                         Written{"t", PointField::UINT32, 1e8}, Written{"t", PointField::UINT32, 1e5},
-                                         Written{"offset_time", PointField::UINT32, 1e5}));
+INSTANTIATE_TEST_SUITE_P(
+    OfDriversAndConverters, Unit,
+    testing::Values(Written{"time", PointField::FLOAT32, 0.1}, Written{"time", PointField::FLOAT32, 1.0},
+                    Written{"time", PointField::FLOAT32, 1e2}, Written{"time", PointField::FLOAT32, 1e5},
+                    Written{"t", PointField::UINT32, 1e8}, Written{"t", PointField::UINT32, 1e5},
+                    Written{"offset_time", PointField::UINT32, 1e5}, Written{"time_stamp", PointField::FLOAT32, 0.1},
+                    Written{"time_offset_ns", PointField::UINT32, 1e8}, Written{"ts", PointField::INT32, 1e5},
+                    Written{"t", PointField::FLOAT64, 0.1}, Written{"time", PointField::FLOAT64, 1e5},
+                    Written{"timestamp", PointField::FLOAT64, 0.0, 1e6},
+                    Written{"point_stamp", PointField::FLOAT64, 0.0, 1.0},
+                    Written{"timestamp", PointField::FLOAT64, 1e5}));
+
+class WildTime : public testing::TestWithParam<Written> {};
+
+TEST_P(WildTime, NeitherDelaysNorDropsACloud) {
+  const Drive drive(GetParam());
+  EXPECT_TRUE(drive.rig.drops.empty()) << drive.rig.drops[0];
+  EXPECT_TRUE(drive.rig.strange_times.empty()) << drive.rig.strange_times[0];
+  ASSERT_EQ(drive.rig.labeled.size(), 6U);
+  EXPECT_LT(drive.worst(), 1e-3) << "[m]; without de-skewing it is " << kSpeed * kPeriod;
+  const auto& remarks = drive.rig.remarks;
+  EXPECT_EQ(std::count(remarks.begin(), remarks.end(), "1, taken for the scan's nearest end"), 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(InAnyEncoding, WildTime,
+                         testing::Values(Written{"time", PointField::FLOAT32, 0.1, 0.0, 0.9},
+                                         Written{"time", PointField::FLOAT32, 0.1, 0.0, 1e9},
+                                         Written{"time", PointField::FLOAT32, 0.1, 0.0, std::nan("")},
+                                         Written{"t", PointField::UINT32, 1e8, 0.0, 4e9},
+                                         Written{"timestamp", PointField::FLOAT64, 0.0, 1.0, 5.0}));
+
+TEST(TimesOfNoUse, AreSaidOnceWithTheFieldsThereAre) {
+  const struct {
+    Written written;
+    const char* text;
+  } kCases[]{{{"intensity", PointField::FLOAT32, 0.1}, "no times of echoes; fields: x y z intensity"},
+             {{"time", PointField::FLOAT32, 0.0}, "all times in 'time' are alike (0 s)"},
+             {{"time_of_day", PointField::FLOAT32, 17.0}, "'time_of_day' looks like echoes' times"}};
+  for (const auto& [written, text] : kCases) {
+    const Drive drive(written);
+    ASSERT_EQ(drive.rig.not_deskewed.size(), 1U) << text;
+    EXPECT_NE(drive.rig.not_deskewed[0].find(text), std::string::npos) << drive.rig.not_deskewed[0];
+    EXPECT_EQ(drive.rig.pipeline.deskewedBy(), drive.rig.not_deskewed[0]);
+  }
+}
+
+TEST(TimesOfUse, AreSaidAsWhatTheCloudsAreDeskewedBy) {
+  const Drive drive({"t", PointField::UINT32, 1e5});
+  EXPECT_TRUE(drive.rig.not_deskewed.empty());
+  const std::string& text = drive.rig.pipeline.deskewedBy();
+  for (const char* part : {"times in 't'", "microseconds", "as they are written"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  }
+}
 
 TEST(TimeUnit, TheConfigurationOverrules) {
   Config config = test::smallConfig();
@@ -95,7 +152,8 @@ std::string findingAfter(const std::vector<double>& stamps, const Written& writt
       const auto value = static_cast<float>(wild);
       std::memcpy(&cloud->data[offset], &value, sizeof value);
     }
-    unit.observe(*cloud, std::get<CloudLayout>(judgeLayout(*cloud)));
+    CloudLayout layout = std::get<CloudLayout>(judgeLayout(*cloud));
+    unit.observe(*cloud, layout);
   }
   return unit.finding();
 }

@@ -1,0 +1,129 @@
+#include "ros/echo_clock.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+namespace donex {
+namespace {
+
+/// What drivers and converters are known to write. The first holds until the scans tell otherwise.
+std::vector<TimeReading> knownReadings() {
+  return {{1.0, 0.0, "as they are written"},
+          {0.0, 0.0, "as what is undone already: the clouds were de-skewed before"},
+          {1.0, -1.0, "a scan earlier: they count from its begin, and the stamp is its end"},
+          {1.0, 1.0, "a scan later: they count from its end, and the stamp is its begin"},
+          {-1.0, 0.0, "backwards from the stamp"}};
+}
+
+/// So many clouds tell how far apart clouds are.
+constexpr int kPatience = 5;
+
+void reread(const TimeReading& reading, EchoTimes& times) {
+  if (reading.factor == 1.0 && reading.spans == 0.0) return;
+  if (reading.undoesNothing()) return times.clear();
+  const double span = times.last - times.first;
+  for (float& time : times.after_stamp) time = static_cast<float>(reading(static_cast<double>(time), span));
+  const double first = reading(times.first, span), last = reading(times.last, span);
+  times.first = std::min(first, last);
+  times.last = std::max(first, last);
+}
+
+}  // namespace
+
+EchoClock::EchoClock(const Config& config)
+    : motion_(config.motion), wanted_(config.cloud.time_field), choice_(knownReadings()) {}
+
+bool EchoClock::observe(const sensor_msgs::PointCloud2& cloud, CloudLayout& layout) {
+  const bool is_asked = motion_.deskew && motion_.source != OdometrySource::kNone;
+  const bool is_news = is_asked && unit_.observe(cloud, layout);
+  if (is_news) state_ = State::kNotYet;
+  return is_news;
+}
+
+void EchoClock::read(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout,
+                     std::vector<Eigen::Vector3f>& echoes, EchoTimes& times) {
+  CloudLayout used = layout;
+  const bool is_asked = motion_.deskew && motion_.source != OdometrySource::kNone;
+  if (is_asked) {
+    unit_.apply(used);
+  } else {
+    used.time.reset();
+  }
+  parseEchoes(cloud, used, echoes, times);
+  if (frame_.empty()) frame_ = cloud.header.frame_id;
+  // Who tells the encoding means it.
+  is_compared_ = !times.empty() && !layout.time->is_told && cloud.header.frame_id == frame_;
+  if (is_compared_) {
+    first_ = times.first;
+    last_ = times.last;
+    choice_.take(cloud.header.stamp.toSec(), echoes, times.after_stamp);
+  }
+  not_understood_ = layout.time && !used.time ? std::min(not_understood_ + 1, kPatience) : 0;
+  const State state = stateOf(layout, used, times);
+  if (state != state_ || state == State::kNotYet) {
+    state_ = state;
+    deskewed_by_ = describe(state, cloud, layout, times);
+  }
+  const bool is_reread = !times.empty() && !layout.time->is_told;
+  if (is_reread) reread(choice_.reading(), times);
+}
+
+bool EchoClock::follow(double stamp, const Eigen::Isometry3d& odom_from_sensor) {
+  if (!is_compared_ || !choice_.follow(stamp, odom_from_sensor)) return false;
+  std::ostringstream text;
+  text << "echoes' times, from " << first_ << " to " << last_ << " s after the stamp, are read "
+       << choice_.reading().meaning << "; so the scans fit one another better by "
+       << std::lround(100.0 * choice_.gain()) << " %; time_encoding overrules this";
+  reading_finding_ = text.str();
+  state_ = State::kNotYet;
+  return true;
+}
+
+EchoClock::State EchoClock::stateOf(const CloudLayout& layout, const CloudLayout& used, const EchoTimes& times) const {
+  if (motion_.source == OdometrySource::kNone) return State::kAtRest;
+  if (!motion_.deskew) return State::kOff;
+  if (!layout.time) return wanted_.empty() ? State::kNoField : State::kTold;
+  if (!used.time) return not_understood_ < kPatience ? State::kNotYet : State::kNotUnderstood;
+  if (!times.problem.empty()) return State::kStrange;
+  if (times.empty() || times.first == times.last) return State::kAlike;
+  return choice_.reading().undoesNothing() && !layout.time->is_told ? State::kUndone : State::kTimes;
+}
+
+std::string EchoClock::describe(State state, const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout,
+                                const EchoTimes& times) const {
+  std::ostringstream text;
+  switch (state) {
+    case State::kNotYet: return "not known yet";
+    case State::kOff: return "nothing: deskew is false";
+    case State::kAtRest: return "nothing: the sensor is at rest";
+    case State::kTold:
+      text << "nothing: the cloud has no field '" << wanted_
+           << "' with times (FLOAT32, FLOAT64, UINT32 or "
+              "INT32); fields: "
+           << fieldNames(cloud);
+      break;
+    case State::kNoField: text << "nothing: the clouds carry no times of echoes; fields: " << fieldNames(cloud); break;
+    case State::kNotUnderstood:
+      text
+          << "nothing: '" << layout.time->name
+          << "' looks like echoes' times, but spans nothing like a scan in any unit; time_field and time_encoding tell";
+      break;
+    case State::kAlike:
+      text << "nothing: all times in '" << layout.time->name << "' are alike (" << times.first << " s)";
+      break;
+    case State::kStrange: text << "nothing: " << times.problem; break;
+    case State::kUndone:
+      text << "nothing: the clouds were de-skewed before, as their scans say; their times are still there";
+      break;
+    case State::kTimes:
+      text << "times in '" << layout.time->name << "'" << (unit_.unit().empty() ? "" : ", ") << unit_.unit()
+           << ", from " << times.first << " to " << times.last << " s after the stamp, read "
+           << choice_.reading().meaning;
+      break;
+  }
+  return text.str();
+}
+
+}  // namespace donex

@@ -1,0 +1,70 @@
+// What the times of a stream's echoes are: their unit, what they count from, and what the echoes are de-skewed by.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <sensor_msgs/PointCloud2.h>
+
+#include "core/motion/deskew_choice.h"
+#include "donex/config.h"
+#include "ros/cloud_layout.h"
+#include "ros/conversions.h"
+#include "ros/time_unit.h"
+
+namespace donex {
+
+class EchoClock {
+ public:
+  explicit EchoClock(const Config& config);
+
+  /// Takes the clouds in the order of their arrival; true when the unit is another one than before: clouds that have
+  /// been read are to be read again.
+  bool observe(const sensor_msgs::PointCloud2& cloud, CloudLayout& layout);
+
+  /// Echoes, and their times as they are to be used; these empty where nothing is to be undone.
+  void read(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout, std::vector<Eigen::Vector3f>& echoes,
+            EchoTimes& times);
+
+  /// Where the sensor of the cloud that was read last was at its stamp [s]; true when its times are to be read
+  /// differently from now on.
+  bool follow(double stamp, const Eigen::Isometry3d& odom_from_sensor);
+
+  /// What was found of the unit, and of what the times count from; empty where both are as usual.
+  const std::string& unitFinding() const { return unit_.finding(); }
+  const std::string& readingFinding() const { return reading_finding_; }
+
+  /// "times in 'time'", or "nothing: " and why.
+  const std::string& deskewedBy() const { return deskewed_by_; }
+  /// Whether there is nothing to de-skew by, although nobody has made a mistake that is known.
+  bool lacksTimes() const {
+    return state_ == State::kNoField || state_ == State::kNotUnderstood || state_ == State::kAlike;
+  }
+  /// Whether the configured field is missing.
+  bool lacksToldField() const { return state_ == State::kTold; }
+
+  /// Poses cannot be compared with those before.
+  void reset() { choice_.reset(); }
+
+ private:
+  enum class State { kNotYet, kOff, kAtRest, kTold, kNoField, kNotUnderstood, kAlike, kStrange, kUndone, kTimes };
+
+  State stateOf(const CloudLayout& layout, const CloudLayout& used, const EchoTimes& times) const;
+  std::string describe(State state, const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout,
+                       const EchoTimes& times) const;
+
+  MotionConfig motion_;
+  std::string wanted_;  // time_field
+  TimeUnit unit_;
+  DeskewChoice choice_;
+  std::string frame_;                // of the clouds that are compared
+  bool is_compared_ = false;         // the cloud that was read last
+  double first_ = 0.0, last_ = 0.0;  // of its times, as they are read [s]
+  std::string reading_finding_;
+  int not_understood_ = 0;  // clouds in a row whose field only looks like times
+  State state_ = State::kNotYet;
+  std::string deskewed_by_ = "not known yet";
+};
+
+}  // namespace donex
