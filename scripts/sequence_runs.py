@@ -16,7 +16,7 @@ class Figures:
     recall: str
     milliseconds: str
     phantoms: str = "nan"  # a scan
-    odometry: str = ""  # against the scans: agrees, disagrees, or against (cannot tell)
+    odometry: str = ""  # against the scans: agrees, disagrees with the likely cause, or cannot tell
 
     def __post_init__(self):
         # A ratio of nothing is printed as a dash: where nothing moves there is no recall.
@@ -45,11 +45,18 @@ def label(sequence, arguments=(), settings=()):
     run = subprocess.run(command, capture_output=True, text=True, check=False)
     scores = re.search(r"^this run +([\d.]+|-) +([\d.]+|-) +([\d.]+|-)", run.stdout, re.MULTILINE)
     phantoms = re.search(r"([\d.]+|nan) a scan", run.stdout)
-    odometry = re.search(r"^odometry (agrees|disagrees|against)", run.stdout, re.MULTILINE)
+    odometry = re.search(r"^odometry (agrees|disagrees|against).*?(?:likely cause(: .*))?$", run.stdout, re.MULTILINE)
     time = re.search(r"CPU: median ([\d.]+) ms", run.stdout)
     if run.returncode != 0 or scores is None or time is None or phantoms is None:
         sys.exit(f"{' '.join(command)}\n{run.stdout}{run.stderr}")
-    return Figures(*scores.groups(), time.group(1), phantoms.group(1), odometry.group(1) if odometry else "")
+    return Figures(*scores.groups(), time.group(1), phantoms.group(1), said(odometry))
+
+
+def said(odometry):
+    """What the check of odometry says, from its line; empty where there was no check."""
+    if odometry is None:
+        return ""
+    return "cannot tell" if odometry.group(1) == "against" else odometry.group(1) + (odometry.group(2) or "")
 
 
 def progress(text):

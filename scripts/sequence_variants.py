@@ -21,6 +21,16 @@ def shifted(poses, offset):
     return moved
 
 
+def planar(poses):
+    """x, y and yaw of them, as wheels tell it."""
+    flat = numpy.tile(numpy.eye(4), (len(poses), 1, 1))
+    flat[:, :2, 3] = poses[:, :2, 3]
+    yaw = numpy.arctan2(poses[:, 1, 0], poses[:, 0, 0])
+    flat[:, 0, 0] = flat[:, 1, 1] = numpy.cos(yaw)
+    flat[:, 1, 0], flat[:, 0, 1] = numpy.sin(yaw), -numpy.sin(yaw)
+    return flat
+
+
 def with_poses(sequence, folder, poses):
     linked(sequence, folder)
     (folder / "poses.txt").unlink()

@@ -75,14 +75,24 @@ void DriveRun::learn(std::size_t index) {
 void DriveRun::followPoses(const Scan& scan) {
   if (!(jump_.follow(scan.stamp, scan.odom_from_base) > 0.0)) return;
   ++jumps_;
+  if (completion_) completion_->reset();
   live_->reset();
 }
 
+/// A drive that is shown again has its poses from the first time.
+void DriveRun::complete(Scan& scan, std::size_t index) {
+  if (index == completed_poses_.size()) {
+    completed_poses_.push_back(completion_->complete(scan.echoes, scan.base_from_sensor, scan.odom_from_base));
+    completed_ += completion_->isActive() ? 1U : 0U;
+  }
+  scan.odom_from_base = completed_poses_[index];
+}
+
 /// The poses given, as a node checks those of its odometry; once, however often the drive is shown.
-void DriveRun::compare(const Scan& scan, std::size_t index) {
+void DriveRun::compare(const Scan& scan, const Eigen::Isometry3d& given, std::size_t index) {
   if (index != checked_) return;
   ++checked_;
-  check_->check({scan.stamp, scan.echoes, scan.base_from_sensor, scan.odom_from_base});
+  check_->check({scan.stamp, scan.echoes, scan.base_from_sensor, given});
   if (live_ != nullptr) check_->learn(labels_.dynamic);
 }
 
@@ -96,9 +106,12 @@ void DriveRun::run(const SequenceReader& sequence, std::size_t scans, const Sink
       Scan scan = toScan(sequence.scan(i));
       if (odometry_) locate(scan, i);
       if (check_ && live_ != nullptr) followPoses(scan);
+      const Eigen::Isometry3d given = scan.odom_from_base;
+      if (completion_) complete(scan, i);
       judge(scan, i, durationOf(sequence, i));
       if (odometry_) learn(i);
-      if (check_) compare(scan, i);
+      if (completion_ && live_ != nullptr) completion_->learn(labels_.dynamic);
+      if (check_) compare(scan, given, i);
       if (counts) sink(i, scan, labels_);
       progress();
     }

@@ -9,6 +9,7 @@
 #include "core/motion/lidar_odometry.h"
 #include "core/motion/odometry_check.h"
 #include "core/motion/odometry_jump.h"
+#include "core/motion/planar_completion.h"
 #include "donex/whole_drive.h"
 #include "evaluation/scan_parts.h"
 #include "io/sequence.h"
@@ -29,6 +30,9 @@ class DriveRun {
   /// Shows the method each scan in so many parts (ScanParts); labels and times are those of whole scans again.
   void cutScansInto(std::size_t parts) { parts_ = ScanParts(parts); }
 
+  /// Poses given that never leave their plane get height, roll and pitch from the scans (PlanarCompletion).
+  void completePlanarPoses() { completion_.emplace(); }
+
   /// Takes the labels of a scan; `index` is the sequence's.
   using Sink = std::function<void(std::size_t index, const Scan& scan, const EchoLabels& labels)>;
 
@@ -48,6 +52,9 @@ class DriveRun {
   /// Of the poses given against the scans; null without them.
   const OdometryCheck* check() const { return check_ ? &*check_ : nullptr; }
 
+  /// Scans whose height, roll and pitch were found so.
+  std::size_t completed() const { return completed_; }
+
   /// Jumps of the poses given, at each of which a live method has forgotten its grid.
   std::size_t jumps() const { return jumps_; }
 
@@ -61,8 +68,9 @@ class DriveRun {
   void judge(const Scan& scan, std::size_t index, double duration);
   void locate(Scan& scan, std::size_t index);
   void learn(std::size_t index);
-  void compare(const Scan& scan, std::size_t index);
+  void compare(const Scan& scan, const Eigen::Isometry3d& given, std::size_t index);
   void followPoses(const Scan& scan);
+  void complete(Scan& scan, std::size_t index);
 
   std::unique_ptr<Detector> live_;
   std::unique_ptr<WholeDriveDetector> whole_;
@@ -71,8 +79,10 @@ class DriveRun {
   std::optional<LidarOdometry> odometry_;
   std::optional<OdometryCheck> check_;
   OdometryJump jump_;
-  std::size_t checked_ = 0, jumps_ = 0;  // scans
+  std::optional<PlanarCompletion> completion_;
+  std::size_t checked_ = 0, jumps_ = 0, completed_ = 0;  // scans
   std::vector<TrackedScan> tracked_;
+  std::vector<Eigen::Isometry3d> completed_poses_;
   std::vector<double> odometry_times_;
   std::vector<double> times_, cpu_times_;
 };

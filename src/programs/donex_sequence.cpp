@@ -1,5 +1,6 @@
 // A SemanticKITTI-layout sequence through the detector: labels, time and score.
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -25,6 +26,7 @@ struct Arguments {
   std::size_t frames = 0;  ///< 0: all
   std::size_t parts = 1;   ///< per scan
   std::string odometry = "given";
+  bool complete_planar = false;
   bool overwrite = false;
 };
 
@@ -81,10 +83,28 @@ void report(const Run& run, const Config& config, const DriveRun& drive, bool ha
   }
 }
 
+void reportCompletion(const Arguments& arguments, const DriveRun& drive) {
+  if (!arguments.complete_planar) return;
+  fmt::print("height, roll and pitch of {} scans were found in the scans{}\n", drive.completed(),
+             drive.completed() > 0 ? "" : ": the poses leave their plane, or hardly move");
+}
+
 void reportCheck(const DriveRun& drive) {
   if (drive.check() == nullptr) return;
   fmt::print("{}\n", summaryOf(drive.check()->finding()));
   if (drive.jumps() > 0) fmt::print("the poses jumped {} times, and the grid was forgotten\n", drive.jumps());
+}
+
+/// Of the newest scan: what tells whether a start is right.
+void reportLastStep(const std::vector<Eigen::Isometry3d>& found, const std::vector<Eigen::Isometry3d>& given) {
+  if (found.size() < 2) return;
+  const auto stepOf = [](const std::vector<Eigen::Isometry3d>& poses) {
+    return poses[poses.size() - 2].inverse() * poses.back();
+  };
+  const Eigen::Isometry3d difference = stepOf(given).inverse() * stepOf(found);
+  const double angle = std::abs(Eigen::AngleAxisd(Eigen::Matrix3d(difference.linear())).angle());
+  fmt::print("its last step against poses.txt: {:.3f} m, {:.3f} degrees\n", difference.translation().norm(),
+             angle * 180.0 / kPi);
 }
 
 /// Poses of the scans against those that the sequence comes with.
@@ -102,6 +122,7 @@ void reportOdometry(const SequenceReader& sequence, const DriveRun& drive) {
   const Drift drift = driftOver(found, given, kPiece);
   fmt::print("odometry from the scans: {} degenerate, {} lost; CPU time median {:.2f} ms, p99 {:.2f} ms\n", degenerate,
              lost, 1e3 * quantile(drive.odometryTimes(), 0.5), 1e3 * quantile(drive.odometryTimes(), 0.99));
+  reportLastStep(found, given);
   if (drift.pieces == 0) return;
   fmt::print("its drift against poses.txt over {:.0f} m: {:.2f} %, {:.3f} degrees\n", drift.length,
              100.0 * drift.translation, drift.rotation * 180.0 / kPi);
@@ -110,13 +131,19 @@ void reportOdometry(const SequenceReader& sequence, const DriveRun& drive) {
 void run(const CLI::App& app, const Arguments& arguments, const ConfigOptions& options) {
   const Config config = options.config();
   const SequenceReader sequence = openSequence(app, arguments.sequence);
+  const bool is_from_scans = arguments.odometry == "lidar";
+  if (arguments.complete_planar && is_from_scans) {
+    throw ArgumentError("--complete-planar completes the poses of poses.txt, which --odometry lidar does without");
+  }
   prepareOutput(arguments);
   const std::size_t scans = scansOf(sequence, arguments.frames);
-  DriveRun drive(config, arguments.odometry == "lidar" ? DriveOdometry::kLidar : DriveOdometry::kGiven);
+  DriveRun drive(config, is_from_scans ? DriveOdometry::kLidar : DriveOdometry::kGiven);
   drive.cutScansInto(arguments.parts);
+  if (arguments.complete_planar) drive.completePlanarPoses();
   const Run run = runSequence(sequence, scans, drive, arguments.out);
   report(run, config, drive, sequence.hasLabels());
   reportOdometry(sequence, drive);
+  reportCompletion(arguments, drive);
   reportCheck(drive);
   if (!arguments.out.empty()) writeRunFigures(arguments.out, figuresOf(drive, config));
 }
@@ -134,6 +161,8 @@ int main(int argc, char** argv) {
                  "given: the poses of poses.txt; lidar: found from the scans, and compared with those; by default " +
                      arguments.odometry)
       ->check(CLI::IsMember({"given", "lidar"}));
+  app.add_flag("--complete-planar", arguments.complete_planar,
+               "where poses.txt never leaves its plane, as odometry of wheels: height, roll and pitch from the scans");
   app.add_option("--parts", arguments.parts,
                  "cut each scan into N sectors that are judged one after the other, at times of their own; labels, "
                  "times and figures are those of whole scans")

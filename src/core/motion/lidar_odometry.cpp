@@ -31,7 +31,7 @@ const char* describe(TrackingStatus status) {
 }
 
 LidarOdometry::LidarOdometry(const Options& options)
-    : options_(options), map_(options.map), registration_(options.registration) {
+    : options_(options), map_(options.map), registration_(options.registration), selection_(options.selection) {
   reset();
 }
 
@@ -43,20 +43,22 @@ void LidarOdometry::reset() {
   squared_error_ = options_.first_gate * options_.first_gate / 9.0;
   usual_fitting_ = 0.0;
   lost_ = 0;
-  has_track_ = false;
+  has_track_ = is_anchored_ = false;
+  determined_at_ = 0.0;
   to_keep_.clear();
 }
 
 std::size_t LidarOdometry::memoryBytes() const {
-  return map_.memoryBytes() + thinning_.memoryBytes() + ranges_.capacity() * sizeof(float) +
-         (usable_.capacity() + for_map_.capacity() + picked_.capacity()) * sizeof(std::uint32_t) +
+  return map_.memoryBytes() + selection_.memoryBytes() +
          (source_.capacity() + to_keep_.capacity()) * sizeof(Eigen::Vector3f);
 }
 
 const TrackedScan& LidarOdometry::locate(double stamp, const std::vector<Eigen::Vector3f>& echoes) {
   keep();
   echoes_ = echoes.size();
-  select(echoes);
+  selection_.select(echoes);
+  source_.clear();
+  for (const std::uint32_t i : selection_.toRegister()) source_.push_back(echoes[i]);
   if (has_track_) {
     follow(stamp);
   } else if (source_.size() >= options_.least_echoes) {
@@ -65,9 +67,9 @@ const TrackedScan& LidarOdometry::locate(double stamp, const std::vector<Eigen::
     last_.status = TrackingStatus::kLost;
   }
   const bool is_placed = last_.status != TrackingStatus::kLost;
-  if (!is_placed) for_map_.clear();
   to_keep_.clear();
-  for (const std::uint32_t i : for_map_) to_keep_.push_back(echoes[i]);
+  if (!is_placed) return last_;
+  for (const std::uint32_t i : selection_.forMap()) to_keep_.push_back(echoes[i]);
   return last_;
 }
 
@@ -76,47 +78,15 @@ void LidarOdometry::follow(double stamp) {
   const Eigen::Isometry3d prediction = predicted(stamp);
   if (source_.size() < options_.least_echoes) return lose(prediction, stamp);
   map_.moveTo(prediction.translation());
-  const Registration registration = registered(prediction, elapsed);
+  Registration registration = registered(prediction, elapsed);
+  // A velocity that is known is kept by little; that little does not find one.
+  const bool is_in_doubt = !is_anchored_ && registration.undetermined == 0;
+  if (is_in_doubt && slides(registration)) leaveOpen(prediction, registration);
   if (isSound(registration, prediction, elapsed)) {
     accept(registration, prediction, stamp);
   } else {
     lose(prediction, stamp);
   }
-}
-
-/// The echoes that can be used, those of them for the map, and those to register.
-void LidarOdometry::select(const std::vector<Eigen::Vector3f>& echoes) {
-  findNear(echoes);
-  const float nearest = nearest_ * nearest_, farthest = options_.farthest * options_.farthest;
-  usable_.clear();
-  for (std::size_t i = 0; i < echoes.size(); ++i) {
-    const float range = echoes[i].squaredNorm();
-    if (range >= nearest && range <= farthest) usable_.push_back(static_cast<std::uint32_t>(i));  // never with NaN
-  }
-  for_map_.clear();
-  thinning_.pick(echoes, usable_, options_.map_edge, for_map_);
-  for (const float edge : options_.source_edges) {
-    picked_.clear();
-    thinning_.pick(echoes, for_map_, edge, picked_);
-    if (picked_.size() >= options_.least_source) break;
-  }
-  source_.clear();
-  for (const std::uint32_t i : picked_) source_.push_back(echoes[i]);
-}
-
-void LidarOdometry::findNear(const std::vector<Eigen::Vector3f>& echoes) {
-  constexpr std::size_t kEnough = 1000;  // ranges for a median
-  const std::size_t stride = std::max<std::size_t>(1, echoes.size() / kEnough);
-  ranges_.clear();
-  for (std::size_t i = 0; i < echoes.size(); i += stride) {
-    const float range = echoes[i].norm();
-    if (std::isfinite(range) && range > 0.0F) ranges_.push_back(range);
-  }
-  nearest_ = options_.nearest_least;
-  if (ranges_.empty()) return;
-  const auto middle = ranges_.begin() + static_cast<std::ptrdiff_t>(ranges_.size() / 2);
-  std::nth_element(ranges_.begin(), middle, ranges_.end());
-  nearest_ = std::min(std::max(options_.nearest_share * *middle, options_.nearest_least), options_.nearest_most);
 }
 
 Eigen::Isometry3d LidarOdometry::predicted(double stamp) const {
@@ -136,16 +106,40 @@ Registration LidarOdometry::registered(const Eigen::Isometry3d& prediction, doub
   const Registration second = registration_.align(map_, source_, searched(prediction, reach), options_.search_step);
   // Along a tunnel everything fits: where the velocity is known it tells more.
   const bool is_open = has_velocity && second.undetermined > 0;
-  return !is_open && fitnessOf(second) > options_.better_fitness * fitnessOf(first) ? second : first;
+  const double fitness = fitnessAt(first.map_from_sensor, 1);
+  const bool is_better = fitnessAt(second.map_from_sensor, 1) > options_.better_fitness * fitness;
+  return is_better && !is_open ? second : first;
 }
 
 bool LidarOdometry::isUsual(const Registration& registration) const {
   return registration.undetermined == 0 && shareFitting(registration) > options_.usual_share * usual_fitting_;
 }
 
-double LidarOdometry::fitnessOf(const Registration& registration) {
+/// Whether a scan fits about as well all along a direction on the ground, as between parallel barriers: what holds it
+/// there may be the traffic that keeps pace.
+bool LidarOdometry::slides(const Registration& registration) {
+  constexpr std::size_t kEnoughToSlide = 1000;  // echoes
+  constexpr double kSteep = 0.7;                // of the unit vector's height: no vehicle slides up
+  if (std::abs(registration.weakest.z()) > kSteep) return false;
+  const std::size_t stride = std::max<std::size_t>(1, source_.size() / kEnoughToSlide);
+  const Eigen::Vector3d slide = options_.slide_distance * registration.weakest;
+  const Eigen::Isometry3d& pose = registration.map_from_sensor;
+  const double in_place = fitnessAt(pose, stride);
+  const double beside = std::max(fitnessAt(Eigen::Translation3d(slide) * pose, stride),
+                                 fitnessAt(Eigen::Translation3d(-slide) * pose, stride));
+  return beside > options_.slide_fitness * in_place;
+}
+
+/// The least determined direction is left to the prediction.
+void LidarOdometry::leaveOpen(const Eigen::Isometry3d& prediction, Registration& registration) const {
+  const Eigen::Vector3d to_prediction = prediction.translation() - registration.map_from_sensor.translation();
+  registration.map_from_sensor.pretranslate(registration.weakest * registration.weakest.dot(to_prediction));
+  registration.undetermined = 1;
+}
+
+double LidarOdometry::fitnessAt(const Eigen::Isometry3d& pose, std::size_t stride) {
   constexpr double kFitKernel = 0.15;  // [m]
-  return registration_.fitness(map_, source_, registration.map_from_sensor, kFitKernel, 1);
+  return registration_.fitness(map_, source_, pose, kFitKernel, stride);
 }
 
 /// The best of many starts around the prediction, first in place, then in yaw.
@@ -211,6 +205,9 @@ void LidarOdometry::accept(const Registration& registration, const Eigen::Isomet
                  : knew_velocity               ? TrackingStatus::kTracking
                                                : TrackingStatus::kStarting;
   lost_ = 0;
+  const bool is_open = registration.undetermined > 0;
+  if (!is_open) determined_at_ = stamp;
+  is_anchored_ = !is_open || (is_anchored_ && stamp - determined_at_ < options_.longest_prediction);
   if (stamp > last_stamp_) {
     step_ = before.inverse() * last_.odom_from_sensor;
     step_time_ = stamp - last_stamp_;
@@ -243,7 +240,7 @@ void LidarOdometry::learn(const std::vector<std::uint8_t>& dynamic) {
   if (dynamic.size() != echoes_) throw std::invalid_argument("a label for each echo of the last scan is needed");
   std::size_t kept = 0;
   for (std::size_t i = 0; i < to_keep_.size(); ++i) {
-    if (dynamic[for_map_[i]] == 0) to_keep_[kept++] = to_keep_[i];
+    if (dynamic[selection_.forMap()[i]] == 0) to_keep_[kept++] = to_keep_[i];
   }
   to_keep_.resize(kept);
 }

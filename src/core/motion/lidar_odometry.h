@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include "core/motion/echo_thinning.h"
+#include "core/motion/echo_selection.h"
 #include "core/motion/gaussian_map.h"
 #include "core/motion/scan_registration.h"
 
@@ -38,22 +38,18 @@ struct TrackedScan {
 class LidarOdometry {
  public:
   struct Options {
+    EchoSelection::Options selection;
     GaussianMap::Options map;
     RegistrationOptions registration;
-    float farthest = 100.0F;          ///< echoes beyond are left out [m]
-    float nearest_share = 0.25F;      ///< nearer than this share of the median range is the vehicle itself, within
-    float nearest_least = 0.4F;       ///< this [m]
-    float nearest_most = 2.5F;        ///< and this [m]
-    float map_edge = 0.2F;            ///< one echo in each such voxel goes into the map [m]
-    std::size_t least_source = 1000;  ///< echoes to register: the largest of the edges that leaves so many
-    std::vector<float> source_edges{1.0F, 0.7F, 0.5F, 0.35F, 0.25F, 0.2F};  ///< falling [m]
-    std::size_t least_echoes = 50;                                          ///< fewer are no scan to register
-    double first_gate = 2.0;     ///< how far a prediction may be off at the start [m]
-    double least_gate = 0.3;     ///< and when all goes well [m]
-    double search_speed = 40.0;  ///< at the start a vehicle is no faster [m/s]
-    double search_reach = 4.0;   ///< and has not come farther since the first scan [m]
-    double search_step = 0.5;    ///< between starts that are tried [m]
+    std::size_t least_echoes = 50;  ///< fewer are no scan to register
+    double first_gate = 2.0;        ///< how far a prediction may be off at the start [m]
+    double least_gate = 0.3;        ///< and when all goes well [m]
+    double search_speed = 40.0;     ///< at the start a vehicle is no faster [m/s]
+    double search_reach = 4.0;      ///< and has not come farther since the first scan [m]
+    double search_step = 0.5;       ///< between starts that are tried [m]
     std::vector<double> search_yaws{-0.12, -0.08, -0.05, -0.025, 0.025, 0.05, 0.08, 0.12};  ///< tried as well [rad]
+    double slide_distance = 0.5;      ///< at a start a scan that fits as well so far on tells nothing there [m]
+    double slide_fitness = 0.93;      ///< as well: this share of how well it fits in place
     double better_fitness = 1.02;     ///< what is found from elsewhere has to fit better by this factor
     double usual_share = 0.93;        ///< with a smaller share of the usual fitting echoes other starts are tried
     double sound_share = 0.7;         ///< a smaller share of the usual fitting echoes is a loss
@@ -81,12 +77,12 @@ class LidarOdometry {
 
  private:
   void follow(double stamp);
-  void select(const std::vector<Eigen::Vector3f>& echoes);
-  void findNear(const std::vector<Eigen::Vector3f>& echoes);
   Eigen::Isometry3d predicted(double stamp) const;
   Registration registered(const Eigen::Isometry3d& prediction, double elapsed);
+  bool slides(const Registration& registration);
+  void leaveOpen(const Eigen::Isometry3d& prediction, Registration& registration) const;
   bool isUsual(const Registration& registration) const;
-  double fitnessOf(const Registration& registration);
+  double fitnessAt(const Eigen::Isometry3d& pose, std::size_t stride);
   Eigen::Isometry3d searched(const Eigen::Isometry3d& prediction, double reach);
   bool isSound(const Registration& registration, const Eigen::Isometry3d& prediction, double elapsed) const;
   void startTrack(double stamp, const Eigen::Isometry3d& pose);
@@ -98,7 +94,7 @@ class LidarOdometry {
   Options options_;
   GaussianMap map_;
   ScanRegistration registration_;
-  EchoThinning thinning_;
+  EchoSelection selection_;
   TrackedScan last_;
   Eigen::Isometry3d step_ = Eigen::Isometry3d::Identity();  // the last motion between two scans, in sensor axes
   double step_time_ = 0.0;                                  // [s]; 0 where none is known
@@ -107,11 +103,10 @@ class LidarOdometry {
   double usual_fitting_ = 0.0;  // share of fitting echoes, fading
   int lost_ = 0;                // scans in a row
   bool has_track_ = false;
-  float nearest_ = 0.0F;  // [m]
+  bool is_anchored_ = false;    // the velocity was found in scans that leave no doubt of it
+  double determined_at_ = 0.0;  // stamp of the newest scan that left nothing open [s]
   // Of the scan in hand.
   std::size_t echoes_ = 0;
-  std::vector<float> ranges_;
-  std::vector<std::uint32_t> usable_, for_map_, picked_;
   std::vector<Eigen::Vector3f> source_, to_keep_;
 };
 

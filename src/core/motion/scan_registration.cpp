@@ -75,6 +75,15 @@ ScanRegistration::NormalEquations ScanRegistration::linearise(GaussianMap& map,
   return sums;
 }
 
+/// Directions of no information are left to the prediction.
+void ScanRegistration::leaveOutGround(NormalEquations& equations) const {
+  for (const int direction : {0, 1, 5}) {
+    equations.information.row(direction).setZero();
+    equations.information.col(direction).setZero();
+    equations.gradient[direction] = 0.0;
+  }
+}
+
 /// Directions are compared in metres: turns by the way of an echo at the usual range, or nearer. Along a
 /// corridor most echoes are far away, and those that tell its roll are not.
 Vector6d ScanRegistration::solve(const NormalEquations& equations, const Eigen::Isometry3d& pose,
@@ -89,6 +98,8 @@ Vector6d ScanRegistration::solve(const NormalEquations& equations, const Eigen::
   Vector6d step = Vector6d::Zero();
   result.undetermined = 0;
   result.least_information = solver.eigenvalues()[0];
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> translations(information.topLeftCorner<3, 3>());
+  result.weakest = translations.eigenvectors().col(0);
   for (int i = 0; i < 6; ++i) {
     const Vector6d direction = solver.eigenvectors().col(i);
     const double value = solver.eigenvalues()[i];
@@ -108,13 +119,14 @@ Registration ScanRegistration::align(GaussianMap& map, const std::vector<Eigen::
   result.map_from_sensor = prediction;
   double kernel = std::max(gate, options_.kernel);
   for (int i = 0; i < options_.most_steps; ++i) {
-    const NormalEquations equations = linearise(map, echoes, result.map_from_sensor, kernel);
+    NormalEquations equations = linearise(map, echoes, result.map_from_sensor, kernel);
     result.matched = equations.matched;
     result.fitting = equations.fitting;
     if (equations.matched < 6 || !(equations.weight > 1e-9)) {
       result.undetermined = 6;
       return result;
     }
+    if (!options_.along_ground) leaveOutGround(equations);
     const Vector6d step = solve(equations, result.map_from_sensor, prediction, result);
     if (!step.allFinite()) return result;
     apply(step, result.map_from_sensor);

@@ -23,6 +23,8 @@ struct RegistrationOptions {
   double inlier_distance = 0.3;    ///< an echo nearer to its surface fits [m]
   /// Information a used echo gives on a direction (0: none, 1/3: on all alike) below which that is undetermined.
   double least_information = 0.008;
+  /// x, y and yaw are found, too; else the prediction stands in them, and height, roll and pitch alone are found.
+  bool along_ground = true;
   double longest_arm = 5.0;  ///< turns are compared with translations by the way of an echo at most this far away [m]
 };
 
@@ -32,6 +34,7 @@ struct Registration {
   std::size_t fitting = 0;         ///< of these, near it
   double least_information = 0.0;  ///< on the least determined direction
   int undetermined = 0;            ///< directions that the scan does not determine; there the prediction stands
+  Eigen::Vector3d weakest = Eigen::Vector3d::UnitX();  ///< the translation that is determined least
   bool converged = false;
 };
 
@@ -57,6 +60,7 @@ class ScanRegistration {
     std::size_t matched = 0, fitting = 0;
   };
 
+  void leaveOutGround(NormalEquations& equations) const;
   NormalEquations linearise(GaussianMap& map, const std::vector<Eigen::Vector3f>& echoes, const Eigen::Isometry3d& pose,
                             double kernel) const;
   Vector6d solve(const NormalEquations& equations, const Eigen::Isometry3d& pose, const Eigen::Isometry3d& prediction,

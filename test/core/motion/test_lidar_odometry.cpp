@@ -1,12 +1,10 @@
-#include <limits>
-#include <random>
-#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "core/motion/lidar_odometry.h"
 #include "core/motion/motion_samples.h"
+#include "core/motion/strange_clouds.h"
 #include "core/motion/surfaces.h"
 
 namespace donex {
@@ -18,7 +16,8 @@ using testing::distanceBetween;
 using testing::rotationBetween;
 using testing::seenFrom;
 using testing::SteadyDrive;
-using Echoes = std::vector<Eigen::Vector3f>;
+using testing::StrangeCloud;
+using testing::strangeClouds;
 
 SteadyDrive bendingDrive() { return {{{4.0, 0.2, 0.05}, {0.02, -0.03, 0.3}}}; }
 
@@ -65,33 +64,22 @@ TEST(LidarOdometry, SaysWhereACorridorLeavesItOpenAndUsesTheRest) {
   }
 }
 
-/// What sensors and drivers hand out when something is wrong.
-struct StrangeCloud {
-  std::string name;
-  Echoes echoes;
-};
-
-std::vector<StrangeCloud> strangeClouds() {
-  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  std::vector<StrangeCloud> clouds;
-  clouds.push_back({"empty", {}});
-  clouds.push_back({"one echo", {{5.0F, 1.0F, 0.0F}}});
-  clouds.push_back({"all NaN", Echoes(5000, Eigen::Vector3f::Constant(kNan))});
-  clouds.push_back({"all in the origin", Echoes(5000, Eigen::Vector3f::Zero())});
-  clouds.push_back({"one echo many times", Echoes(5000, Eigen::Vector3f(7.0F, 2.0F, 1.0F))});
-  clouds.push_back({"huge", Echoes(5000, Eigen::Vector3f::Constant(1e30F))});
-  Echoes line, wall, noise;
-  std::mt19937 random(5);
-  std::uniform_real_distribution<float> number(-30.0F, 30.0F);
-  for (int i = 0; i < 5000; ++i) {
-    line.emplace_back(5.0F + 0.01F * static_cast<float>(i), 2.0F, 1.0F);
-    wall.emplace_back(9.0F, -10.0F + 0.2F * static_cast<float>(i % 100), 0.1F * static_cast<float>(i / 100));
-    noise.emplace_back(number(random), number(random), number(random));
+TEST(LidarOdometry, TakesNoTrafficThatKeepsPaceForTheWorld) {
+  auto world = corridor(-39.9, 39.9);
+  for (const double x : {-20.0, 9.0, 17.0}) {
+    testing::addPatch({x, -1.2, -1.0}, {0.1, 2.4, 0.0}, {0.0, 0.0, 2.4}, 0.2, world);
   }
-  clouds.push_back({"a line", line});
-  clouds.push_back({"a wall elsewhere", wall});
-  clouds.push_back({"noise", noise});
-  return clouds;
+  LidarOdometry odometry;
+  for (int i = 0; i < 6; ++i) {
+    Eigen::Isometry3d truth = Eigen::Isometry3d::Identity();
+    truth.translation().y() = 0.05 * i;
+    const TrackedScan& tracked = odometry.locate(0.1 * i, seenFrom(truth, world));
+    if (i == 0) continue;
+    EXPECT_EQ(tracked.status, TrackingStatus::kDegenerate) << i;
+    EXPECT_EQ(tracked.undetermined, 1) << i;
+    EXPECT_GT(tracked.least_information, RegistrationOptions().least_information) << "the patches alone would do";
+    EXPECT_LT(distanceBetween(tracked.odom_from_sensor, truth), 1e-3) << i;
+  }
 }
 
 TEST(LidarOdometry, NeverJumpsByAStrangeCloudAndRecovers) {

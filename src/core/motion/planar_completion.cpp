@@ -1,0 +1,144 @@
+#include "core/motion/planar_completion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace donex {
+namespace {
+
+Eigen::Matrix3d rotationOf(const Eigen::Vector3d& vector) {
+  const double angle = vector.norm();
+  if (!(angle > 0.0)) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle, vector / angle).toRotationMatrix();
+}
+
+Eigen::Vector3d vectorOf(const Eigen::Matrix3d& rotation) {
+  const Eigen::AngleAxisd turn(rotation);
+  return turn.angle() * turn.axis();
+}
+
+RegistrationOptions outOfThePlane(RegistrationOptions options) {
+  options.along_ground = false;
+  return options;
+}
+
+}  // namespace
+
+void PlaneWatch::follow(const Eigen::Isometry3d& odom_from_base) {
+  if (!has_first_) first_ = odom_from_base;
+  has_first_ = true;
+  const Eigen::Vector3d way = odom_from_base.translation() - first_.translation();
+  // About the frame's vertical, not the vehicle's: one that sits askew stays in its plane, too.
+  const Eigen::Matrix3d turn = odom_from_base.linear() * first_.linear().transpose();
+  left_ = left_ || std::abs(way.z()) > options_.height || turn.col(2).head<2>().norm() > options_.tilt;
+  has_moved_ = has_moved_ || way.norm() > options_.way;
+}
+
+PlanarCompletion::PlanarCompletion(const Options& options)
+    : options_(options),
+      plane_(options.plane),
+      selection_(options.selection),
+      registration_(outOfThePlane(options.registration)) {}
+
+void PlanarCompletion::reset() {
+  plane_.reset();
+  begin();
+  to_keep_.clear();
+  tilt_.setZero();
+  lift_ = 0.0;
+}
+
+void PlanarCompletion::begin() {
+  if (map_) map_->clear();
+  has_map_ = false;
+  predicted_ = 0;
+}
+
+Eigen::Isometry3d PlanarCompletion::complete(const std::vector<Eigen::Vector3f>& echoes,
+                                             const Eigen::Isometry3d& base_from_sensor,
+                                             const Eigen::Isometry3d& odom_from_base) {
+  plane_.follow(odom_from_base);
+  if (!isActive()) return odom_from_base;
+  if (!map_) map_.emplace(options_.map);  // not before: it is large
+  keep();
+  select(echoes, base_from_sensor);
+  if (has_map_) climb(odom_from_base);
+  given_ = odom_from_base;
+  map_->moveTo(completed().translation());
+  const bool is_scan = source_.size() >= options_.least_echoes;
+  if (has_map_ && is_scan) find();
+  has_map_ = has_map_ || is_scan;
+  return completed();
+}
+
+/// Tilted as it was, the vehicle has come higher on its way here.
+void PlanarCompletion::climb(const Eigen::Isometry3d& odom_from_base) {
+  const Eigen::Vector3d way = odom_from_base.translation() - given_.translation();
+  lift_ += (rotationOf(tilt_) * way - way).z();
+}
+
+void PlanarCompletion::find() {
+  const Eigen::Isometry3d prediction = completed();
+  const Registration registration = registration_.align(*map_, source_, prediction, options_.gate);
+  if (isSound(registration, prediction)) {
+    take(registration.map_from_sensor);
+  } else if (++predicted_ > options_.most_predicted) {
+    begin();  // with this scan
+  } else {
+    to_keep_.clear();
+  }
+}
+
+void PlanarCompletion::select(const std::vector<Eigen::Vector3f>& echoes, const Eigen::Isometry3d& base_from_sensor) {
+  echoes_ = echoes.size();
+  selection_.select(echoes);
+  const Eigen::Isometry3f move = base_from_sensor.cast<float>();
+  source_.clear();
+  for (const std::uint32_t i : selection_.toRegister()) source_.push_back(move * echoes[i]);
+  to_keep_.clear();
+  for (const std::uint32_t i : selection_.forMap()) to_keep_.push_back(move * echoes[i]);
+}
+
+bool PlanarCompletion::isSound(const Registration& registration, const Eigen::Isometry3d& prediction) const {
+  const auto matched = static_cast<double>(registration.matched), all = static_cast<double>(source_.size());
+  const bool fits = matched >= options_.least_matched * all &&
+                    static_cast<double>(registration.fitting) >= options_.least_fitting * matched;
+  if (!fits || registration.undetermined == 6) return false;
+  const Eigen::Isometry3d& found = registration.map_from_sensor;
+  const double lift = std::abs(found.translation().z() - prediction.translation().z());
+  const double tilt = vectorOf(found.linear() * prediction.linear().transpose()).norm();
+  return lift <= options_.most_lift && tilt <= options_.most_tilt;
+}
+
+Eigen::Isometry3d PlanarCompletion::completed() const {
+  Eigen::Isometry3d pose = given_;
+  pose.linear() = rotationOf(tilt_) * given_.linear();
+  pose.translation().z() += lift_;
+  return pose;
+}
+
+void PlanarCompletion::take(const Eigen::Isometry3d& found) {
+  tilt_ = vectorOf(found.linear() * given_.linear().transpose());
+  tilt_.z() = 0.0;  // yaw stays as given
+  lift_ = found.translation().z() - given_.translation().z();
+  predicted_ = 0;
+}
+
+void PlanarCompletion::learn(const std::vector<std::uint8_t>& dynamic) {
+  if (to_keep_.empty()) return;
+  if (dynamic.size() != echoes_) throw std::invalid_argument("a label for each echo of the last scan is needed");
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < to_keep_.size(); ++i) {
+    if (dynamic[selection_.forMap()[i]] == 0) to_keep_[kept++] = to_keep_[i];
+  }
+  to_keep_.resize(kept);
+}
+
+void PlanarCompletion::keep() {
+  const Eigen::Isometry3d pose = completed();
+  for (const Eigen::Vector3f& echo : to_keep_) map_->add(pose * echo.cast<double>());
+  to_keep_.clear();
+}
+
+}  // namespace donex

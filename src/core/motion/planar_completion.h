@@ -1,0 +1,100 @@
+// Planar odometry completed: x, y and yaw stay as given; height, roll and pitch come from the scans.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "core/motion/echo_selection.h"
+#include "core/motion/gaussian_map.h"
+#include "core/motion/scan_registration.h"
+
+namespace donex {
+
+/// Whether an odometry has stayed in the plane it began in, as that of wheels does.
+class PlaneWatch {
+ public:
+  struct Options {
+    double height = 1e-4;  ///< out of the plane is beyond that [m]: what rounding makes is far below
+    double tilt = 1e-4;    ///< and turned out of it by more than this [rad]
+    double way = 0.5;      ///< an odometry that has moved less could still be any [m]
+  };
+
+  PlaneWatch() = default;
+  explicit PlaneWatch(const Options& options) : options_(options) {}
+
+  void follow(const Eigen::Isometry3d& odom_from_base);
+  /// Has moved, and never out of its plane.
+  bool isPlanar() const { return !left_ && has_moved_; }
+  void reset() { *this = PlaneWatch(options_); }
+
+ private:
+  Options options_;
+  Eigen::Isometry3d first_ = Eigen::Isometry3d::Identity();
+  bool has_first_ = false, has_moved_ = false, left_ = false;
+};
+
+/// Each scan is registered against a map of those before in three directions alone. Memory and time per scan are
+/// bounded. Not thread-safe.
+class PlanarCompletion {
+ public:
+  struct Options {
+    EchoSelection::Options selection;
+    GaussianMap::Options map;
+    RegistrationOptions registration;
+    PlaneWatch::Options plane;
+    bool any_odometry = false;      ///< complete also one that leaves its plane
+    double gate = 0.3;              ///< the prediction is off by no more, at the echoes [m]
+    std::size_t least_echoes = 50;  ///< fewer are no scan to register
+    double least_matched = 0.1;     ///< with a smaller share of echoes on known surfaces the prediction stands
+    double least_fitting = 0.4;     ///< with a smaller share of these that fit, too
+    double most_lift = 0.3;         ///< no vehicle is so much higher than predicted, from scan to scan [m]
+    double most_tilt = 0.1;         ///< nor tilted by so much more [rad]
+    int most_predicted = 5;         ///< scans in a row that do not fit; then a new map begins
+  };
+
+  PlanarCompletion() : PlanarCompletion(Options()) {}
+  explicit PlanarCompletion(const Options& options);
+
+  /// The vehicle's pose at a scan. `echoes` in the sensor frame [m], `odom_from_base` as the odometry has it.
+  Eigen::Isometry3d complete(const std::vector<Eigen::Vector3f>& echoes, const Eigen::Isometry3d& base_from_sensor,
+                             const Eigen::Isometry3d& odom_from_base);
+
+  /// What moves in that scan, 1 for each echo that does: the map is to hold what stands.
+  void learn(const std::vector<std::uint8_t>& dynamic);
+
+  /// Whether the odometry is completed: where it has been planar so far, unless any is to be.
+  bool isActive() const { return options_.any_odometry || plane_.isPlanar(); }
+
+  /// The odometry begins anew, in a plane of its own.
+  void reset();
+
+ private:
+  void begin();
+  void select(const std::vector<Eigen::Vector3f>& echoes, const Eigen::Isometry3d& base_from_sensor);
+  bool isSound(const Registration& registration, const Eigen::Isometry3d& prediction) const;
+  void climb(const Eigen::Isometry3d& odom_from_base);
+  void find();
+  void take(const Eigen::Isometry3d& found);
+  Eigen::Isometry3d completed() const;
+  void keep();
+
+  Options options_;
+  PlaneWatch plane_;
+  EchoSelection selection_;
+  std::optional<GaussianMap> map_;  // once it is needed
+  ScanRegistration registration_;
+  // What the odometry lacks, in its own axes.
+  Eigen::Vector3d tilt_ = Eigen::Vector3d::Zero();  // axis times angle [rad], along the ground
+  double lift_ = 0.0;                               // [m]
+  bool has_map_ = false;
+  int predicted_ = 0;                                        // scans in a row
+  Eigen::Isometry3d given_ = Eigen::Isometry3d::Identity();  // of the newest scan
+  // Of the scan in hand, in the vehicle's frame.
+  std::size_t echoes_ = 0;
+  std::vector<Eigen::Vector3f> source_, to_keep_;
+};
+
+}  // namespace donex
