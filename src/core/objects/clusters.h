@@ -24,7 +24,7 @@ class Clusters {
   /// A square of `reach` [m] around the sensor.
   Clusters(double reach, const Options& options);
 
-  /// `echoes` [m] in a frame whose z points up, `heights` above ground [m], one an echo.
+  /// `echoes` [m] in a frame whose z points up, `heights` above ground [m], one per echo.
   void connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
                const std::vector<float>& heights, const std::vector<ClusterRole>& roles);
 
