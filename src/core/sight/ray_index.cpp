@@ -22,14 +22,15 @@ constexpr float kSteepestRow = 1.0F;  // tangent of the elevation where the oute
 constexpr float kMargin = 4e-6F;
 constexpr float kDepthMargin = 1e-6F;
 constexpr int kEdge = GridWindow::kBrick;
-using Lanes = std::array<float, kLanes>;
+using Lanes = Eigen::Map<const Eigen::Array<float, kLanes, 1>>;
 
 struct Projected {
   float *across, *up, *depth;
   std::uint32_t* bin;
 };
 
-/// Echoes without a direction (invalid, or in the sensor itself) get the bin behind the last.
+/// Echoes without a direction (invalid, or in the sensor itself) get the bin behind the last, and no NaN: what a
+/// library's minimum makes of that differs between libraries, and between their versions.
 DONEX_WIDE_LOOPS void project(const Eigen::Vector3f& origin, float row_low, float per_up, const EchoBlock& block,
                               const Projected& to) {
   const float ox = origin.x(), oy = origin.y(), oz = origin.z();
@@ -53,9 +54,9 @@ DONEX_WIDE_LOOPS void project(const Eigen::Vector3f& origin, float row_low, floa
     // NaN passes through min and max as their first argument: converted only where there is a direction.
     const int bin = (side * kAcross + static_cast<int>(has_direction ? column : 0.0F)) * kUp +
                     static_cast<int>(has_direction ? row : 0.0F);
-    to.across[i] = across;
-    to.up[i] = up;
-    to.depth[i] = depth;
+    to.across[i] = has_direction ? across : 0.0F;
+    to.up[i] = has_direction ? up : 0.0F;
+    to.depth[i] = has_direction ? depth : -1.0F;
     to.bin[i] = static_cast<std::uint32_t>(has_direction ? bin : kBins);
   }
 }
@@ -141,20 +142,13 @@ void RayIndex::sortPart(std::size_t part) {
 }
 
 RayIndex::Rows RayIndex::rowsOfScan() const {
-  // Behind them are those without a direction, which may be NaN. Lane by lane: what a library's minimum makes of NaN,
-  // and in which order it looks, does not matter then.
+  float low = kSteepestRow, high = -kSteepestRow;
   const std::size_t with_direction = bins_of_part_.front().back().first;
-  std::array<float, kLanes> lows, highs;
-  lows.fill(kSteepestRow);
-  highs.fill(-kSteepestRow);
-  for (std::size_t first = 0; first < with_direction; first += kLanes) {
-    const std::size_t lanes = std::min(with_direction - first, lows.size());
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      lows[lane] = std::min(lows[lane], rays_.up[first + lane]);
-      highs[lane] = std::max(highs[lane], rays_.up[first + lane]);
-    }
+  if (with_direction != 0) {
+    const Eigen::Map<const Eigen::ArrayXf> ups(rays_.up.data(), static_cast<Eigen::Index>(with_direction));
+    low = std::min(low, ups.minCoeff());
+    high = std::max(high, ups.maxCoeff());
   }
-  float low = *std::min_element(lows.begin(), lows.end()), high = *std::max_element(highs.begin(), highs.end());
   low = std::max(low, -kSteepestRow);
   high = std::min(high, kSteepestRow);
   constexpr float kLeastSpan = 0.1F;
@@ -305,18 +299,12 @@ inline bool RayIndex::anyRayCrosses(const Shadow& shadow, const Index3& voxel) c
     const Bin* bin = stripOf(shadow.side, column);
     const std::uint32_t end = bin[shadow.last_row + 1].first;
     for (std::uint32_t first = bin[shadow.first_row].first; first < end; first += kLanes) {
-      // Lanes behind the last ray may hold NaN: they are compared one by one. What a minimum or maximum over all lanes
-      // makes of NaN differs between libraries, and between their versions.
-      Lanes slack;
-      bool any = false;
-      for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
-        const float across = rays_.across[first + lane], up = rays_.up[first + lane];
-        const float in_across = std::min(across - across_low, across_high - across);
-        const float in_up = std::min(up - up_low, up_high - up);
-        slack[lane] = std::min(std::min(in_across, in_up), rays_.depth[first + lane] - shadow.near_depth);
-        any |= slack[lane] >= 0.0F;
-      }
-      if (!any) continue;
+      const Lanes across(&rays_.across[first]), up(&rays_.up[first]), depth(&rays_.depth[first]);
+      const Eigen::Array<float, kLanes, 1> slack = (across - across_low)
+                                                       .min(across_high - across)
+                                                       .min((up - up_low).min(up_high - up))
+                                                       .min(depth - shadow.near_depth);
+      if (slack.maxCoeff() < 0.0F) continue;
       for (std::uint32_t ray = first; ray < std::min(first + kLanes, end); ++ray) {
         if (slack[ray - first] < 0.0F) continue;
         const Crossing crossing = judge(ray, shadow);
