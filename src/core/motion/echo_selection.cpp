@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace donex {
 
 void EchoSelection::select(const std::vector<Eigen::Vector3f>& echoes) {
+  echoes_ = echoes.size();
   const float nearest = nearestOf(echoes);
   const float least = nearest * nearest, most = options_.farthest * options_.farthest;
   usable_.clear();
@@ -34,6 +36,16 @@ float EchoSelection::nearestOf(const std::vector<Eigen::Vector3f>& echoes) {
   const auto middle = ranges_.begin() + static_cast<std::ptrdiff_t>(ranges_.size() / 2);
   std::nth_element(ranges_.begin(), middle, ranges_.end());
   return std::min(std::max(options_.nearest_share * *middle, options_.nearest_least), options_.nearest_most);
+}
+
+void EchoSelection::leaveOutMoving(const std::vector<std::uint8_t>& dynamic,
+                                   std::vector<Eigen::Vector3f>& for_map) const {
+  if (dynamic.size() != echoes_) throw std::invalid_argument("a label for each echo of the last scan is needed");
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < for_map.size(); ++i) {
+    if (dynamic[for_map_[i]] == 0) for_map[kept++] = for_map[i];
+  }
+  for_map.resize(kept);
 }
 
 std::size_t EchoSelection::memoryBytes() const {

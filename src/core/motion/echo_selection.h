@@ -32,6 +32,10 @@ class EchoSelection {
   const std::vector<std::uint32_t>& forMap() const { return for_map_; }
   const std::vector<std::uint32_t>& toRegister() const { return to_register_; }
 
+  /// Leaves out of `for_map`, the scan's echoes for the map in that order, those that are labelled as moving; `dynamic`
+  /// has a label per echo of the scan. Throws std::invalid_argument for any other number of labels.
+  void leaveOutMoving(const std::vector<std::uint8_t>& dynamic, std::vector<Eigen::Vector3f>& for_map) const;
+
   std::size_t memoryBytes() const;
 
  private:
@@ -39,6 +43,7 @@ class EchoSelection {
 
   Options options_;
   EchoThinning thinning_;
+  std::size_t echoes_ = 0;  // of the scan
   std::vector<float> ranges_;
   std::vector<std::uint32_t> usable_, for_map_, to_register_;
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "donex/motion/rigid_motion.h"
 
@@ -55,7 +54,6 @@ std::size_t LidarOdometry::memoryBytes() const {
 
 const TrackedScan& LidarOdometry::locate(double stamp, const std::vector<Eigen::Vector3f>& echoes) {
   keep();
-  echoes_ = echoes.size();
   selection_.select(echoes);
   source_.clear();
   for (const std::uint32_t i : selection_.toRegister()) source_.push_back(echoes[i]);
@@ -236,14 +234,7 @@ void LidarOdometry::lose(const Eigen::Isometry3d& prediction, double stamp) {
   if (lost_ * step_time_ > options_.longest_prediction) step_.setIdentity();
 }
 
-void LidarOdometry::learn(const std::vector<std::uint8_t>& dynamic) {
-  if (dynamic.size() != echoes_) throw std::invalid_argument("a label for each echo of the last scan is needed");
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < to_keep_.size(); ++i) {
-    if (dynamic[selection_.forMap()[i]] == 0) to_keep_[kept++] = to_keep_[i];
-  }
-  to_keep_.resize(kept);
-}
+void LidarOdometry::learn(const std::vector<std::uint8_t>& dynamic) { selection_.leaveOutMoving(dynamic, to_keep_); }
 
 void LidarOdometry::keep() {
   for (const Eigen::Vector3f& echo : to_keep_) map_.add(last_.odom_from_sensor * echo.cast<double>());

@@ -106,7 +106,6 @@ class LidarOdometry {
   bool is_anchored_ = false;    // the velocity was found in scans that leave no doubt of it
   double determined_at_ = 0.0;  // stamp of the newest scan that left nothing open [s]
   // Of the scan in hand.
-  std::size_t echoes_ = 0;
   std::vector<Eigen::Vector3f> source_, to_keep_;
 };
 

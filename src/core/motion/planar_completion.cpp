@@ -2,21 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
+
+#include "core/motion/rotation_vector.h"
 
 namespace donex {
 namespace {
-
-Eigen::Matrix3d rotationOf(const Eigen::Vector3d& vector) {
-  const double angle = vector.norm();
-  if (!(angle > 0.0)) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle, vector / angle).toRotationMatrix();
-}
-
-Eigen::Vector3d vectorOf(const Eigen::Matrix3d& rotation) {
-  const Eigen::AngleAxisd turn(rotation);
-  return turn.angle() * turn.axis();
-}
 
 RegistrationOptions outOfThePlane(RegistrationOptions options) {
   options.along_ground = false;
@@ -75,7 +65,7 @@ Eigen::Isometry3d PlanarCompletion::complete(const std::vector<Eigen::Vector3f>&
 /// Tilted as it was, the vehicle has come higher on its way here.
 void PlanarCompletion::climb(const Eigen::Isometry3d& odom_from_base) {
   const Eigen::Vector3d way = odom_from_base.translation() - given_.translation();
-  lift_ += (rotationOf(tilt_) * way - way).z();
+  lift_ += (rotationBy(tilt_) * way - way).z();
 }
 
 void PlanarCompletion::find() {
@@ -91,7 +81,6 @@ void PlanarCompletion::find() {
 }
 
 void PlanarCompletion::select(const std::vector<Eigen::Vector3f>& echoes, const Eigen::Isometry3d& base_from_sensor) {
-  echoes_ = echoes.size();
   selection_.select(echoes);
   const Eigen::Isometry3f move = base_from_sensor.cast<float>();
   source_.clear();
@@ -107,19 +96,19 @@ bool PlanarCompletion::isSound(const Registration& registration, const Eigen::Is
   if (!fits || registration.undetermined == 6) return false;
   const Eigen::Isometry3d& found = registration.map_from_sensor;
   const double lift = std::abs(found.translation().z() - prediction.translation().z());
-  const double tilt = vectorOf(found.linear() * prediction.linear().transpose()).norm();
+  const double tilt = rotationVectorOf(found.linear() * prediction.linear().transpose()).norm();
   return lift <= options_.most_lift && tilt <= options_.most_tilt;
 }
 
 Eigen::Isometry3d PlanarCompletion::completed() const {
   Eigen::Isometry3d pose = given_;
-  pose.linear() = rotationOf(tilt_) * given_.linear();
+  pose.linear() = rotationBy(tilt_) * given_.linear();
   pose.translation().z() += lift_;
   return pose;
 }
 
 void PlanarCompletion::take(const Eigen::Isometry3d& found) {
-  tilt_ = vectorOf(found.linear() * given_.linear().transpose());
+  tilt_ = rotationVectorOf(found.linear() * given_.linear().transpose());
   tilt_.z() = 0.0;  // yaw stays as given
   lift_ = found.translation().z() - given_.translation().z();
   predicted_ = 0;
@@ -127,12 +116,7 @@ void PlanarCompletion::take(const Eigen::Isometry3d& found) {
 
 void PlanarCompletion::learn(const std::vector<std::uint8_t>& dynamic) {
   if (to_keep_.empty()) return;
-  if (dynamic.size() != echoes_) throw std::invalid_argument("a label for each echo of the last scan is needed");
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < to_keep_.size(); ++i) {
-    if (dynamic[selection_.forMap()[i]] == 0) to_keep_[kept++] = to_keep_[i];
-  }
-  to_keep_.resize(kept);
+  selection_.leaveOutMoving(dynamic, to_keep_);
 }
 
 void PlanarCompletion::keep() {

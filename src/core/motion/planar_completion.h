@@ -93,7 +93,6 @@ class PlanarCompletion {
   int predicted_ = 0;                                        // scans in a row
   Eigen::Isometry3d given_ = Eigen::Isometry3d::Identity();  // of the newest scan
   // Of the scan in hand, in the vehicle's frame.
-  std::size_t echoes_ = 0;
   std::vector<Eigen::Vector3f> source_, to_keep_;
 };
 

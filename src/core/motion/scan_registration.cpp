@@ -6,6 +6,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "core/motion/rotation_vector.h"
+
 namespace donex {
 namespace {
 
@@ -15,22 +17,15 @@ double weightOf(double squared_distance, double squared_kernel) {
   return share * share;
 }
 
-Eigen::Matrix3d rotationOf(const Eigen::Vector3d& vector) {
-  const double angle = vector.norm();
-  if (angle < 1e-15) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle, vector / angle).toRotationMatrix();
-}
-
 /// The motion around the sensor's own place that leads from `pose` to `target`.
 Vector6d difference(const Eigen::Isometry3d& pose, const Eigen::Isometry3d& target) {
-  const Eigen::AngleAxisd rotation(Eigen::Matrix3d(target.linear() * pose.linear().transpose()));
   Vector6d motion;
-  motion << target.translation() - pose.translation(), rotation.angle() * rotation.axis();
+  motion << target.translation() - pose.translation(), rotationVectorOf(target.linear() * pose.linear().transpose());
   return motion;
 }
 
 void apply(const Vector6d& motion, Eigen::Isometry3d& pose) {
-  pose.linear() = rotationOf(motion.tail<3>()) * pose.linear();
+  pose.linear() = rotationBy(motion.tail<3>()) * pose.linear();
   pose.translation() += motion.head<3>();
 }
 
