@@ -220,9 +220,11 @@ LabelBagOptions chosenMotion(const LabelBagOptions& options, rosbag::View& view,
   OdometrySource& source = chosen.config.motion.source;
   if (source != OdometrySource::kAuto) return chosen;
   const bool has_odometry = !options.odom.empty() || hasTopicOf(view, "nav_msgs/Odometry");
-  source = OdometrySource::kPose;
-  if (!has_odometry)
+  if (has_odometry) {
+    source = OdometrySource::kPose;
+  } else {
     source = tellsMotionByTf(bags, chosen.config.motion) ? OdometrySource::kTf : OdometrySource::kLidar;
+  }
   return chosen;
 }
 

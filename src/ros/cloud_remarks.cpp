@@ -1,8 +1,8 @@
 #include "ros/cloud_remarks.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
+
+#include <fmt/format.h>
 
 #include "core/timing.h"
 
@@ -13,13 +13,6 @@ constexpr std::size_t kSample = 4096;    // echoes of a scan that are looked at
 constexpr std::size_t kFew = 100;        // with fewer echoes nothing is said
 constexpr double kHardlyAny = 0.01;      // of the echoes, in the region
 constexpr double kFartherThanAny = 300;  // median range that no LiDAR's scans have [m]
-
-template <class... Values>
-std::string textOf(const char* format, Values... values) {
-  std::array<char, 400> text{};
-  std::snprintf(text.data(), text.size(), format, values...);
-  return text.data();
-}
 
 /// Calls visit(echo in the sensor's frame [m]) for echoes spread evenly over the scan.
 template <class Visit>
@@ -38,9 +31,9 @@ std::string describe(const Scan& scan, const Region& region, double share) {
     heights.push_back((scan.base_from_sensor * echo).z());
   });
   const double middle = quantile(ranges, 0.5);
-  const std::string text = textOf(
-      "%.1f %% of the echoes lie in the region, %.0f m by %.0f m and from z %.1f to %.1f m of the vehicle's frame; "
-      "of ten echoes eight lie between z %.1f and %.1f m, half of them farther than %.1f m",
+  const std::string text = fmt::format(
+      "{:.1f} % of the echoes lie in the region, {:.0f} m by {:.0f} m and from z {:.1f} to {:.1f} m of the vehicle's "
+      "frame; of ten echoes eight lie between z {:.1f} and {:.1f} m, half of them farther than {:.1f} m",
       100.0 * share, region.x_max - region.x_min, region.y_max - region.y_min, region.z_min, region.z_max,
       quantile(heights, 0.1), quantile(heights, 0.9), middle);
   return text + (middle > kFartherThanAny ? ": are the clouds in metres?" : "");
@@ -60,8 +53,8 @@ std::string regionMissed(const Scan& scan, const Region& region) {
 
 std::string noReturns(const NoReturns& found) {
   if (found.at_largest_range == 0) return {};
-  return textOf("%zu echoes at one largest range, %.3f m, are taken for beams without an echo", found.at_largest_range,
-                static_cast<double>(found.largest_range));
+  return fmt::format("{} echoes at one largest range, {:.3f} m, are taken for beams without an echo",
+                     found.at_largest_range, found.largest_range);
 }
 
 }  // namespace
@@ -78,7 +71,7 @@ const char* describe(CloudRemark remark) {
 
 CloudRemarks remarksOn(const Scan& scan, const NoReturns& no_returns, const Region& region, std::size_t wild_times,
                        bool lacks_ground) {
-  const std::string wild = wild_times == 0 ? "" : textOf("%zu, taken for the scan's nearest end", wild_times);
+  const std::string wild = wild_times == 0 ? "" : fmt::format("{}, taken for the scan's nearest end", wild_times);
   const char* ground =
       lacks_ground ? "hardly an echo lies on it: it was removed beforehand, or the sensor does not see it" : "";
   return {noReturns(no_returns), regionMissed(scan, region), wild, ground};

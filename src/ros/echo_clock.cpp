@@ -35,9 +35,11 @@ void reread(const TimeReading& reading, EchoTimes& times) {
 EchoClock::EchoClock(const Config& config)
     : motion_(config.motion), wanted_(config.cloud.time_field), choice_(knownReadings()) {}
 
+/// Whether echoes are to be de-skewed at all.
+bool EchoClock::isAsked() const { return motion_.deskew && motion_.source != OdometrySource::kNone; }
+
 bool EchoClock::observe(const sensor_msgs::PointCloud2& cloud, CloudLayout& layout) {
-  const bool is_asked = motion_.deskew && motion_.source != OdometrySource::kNone;
-  const bool is_news = is_asked && unit_.observe(cloud, layout);
+  const bool is_news = isAsked() && unit_.observe(cloud, layout);
   if (is_news) state_ = State::kNotYet;
   return is_news;
 }
@@ -45,8 +47,7 @@ bool EchoClock::observe(const sensor_msgs::PointCloud2& cloud, CloudLayout& layo
 void EchoClock::read(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout,
                      std::vector<Eigen::Vector3f>& echoes, EchoTimes& times) {
   CloudLayout used = layout;
-  const bool is_asked = motion_.deskew && motion_.source != OdometrySource::kNone;
-  if (is_asked) {
+  if (isAsked()) {
     unit_.apply(used);
   } else {
     used.time.reset();
@@ -99,10 +100,8 @@ std::string EchoClock::describe(State state, const sensor_msgs::PointCloud2& clo
     case State::kOff: return "nothing: deskew is false";
     case State::kAtRest: return "nothing: the sensor is at rest";
     case State::kTold:
-      text << "nothing: the cloud has no field '" << wanted_
-           << "' with times (FLOAT32, FLOAT64, UINT32 or "
-              "INT32); fields: "
-           << fieldNames(cloud);
+      text << "nothing: the cloud has no field '" << wanted_ << "' with times (FLOAT32, FLOAT64, UINT32 or INT32); "
+           << "fields: " << fieldNames(cloud);
       break;
     case State::kNoField: text << "nothing: the clouds carry no times of echoes; fields: " << fieldNames(cloud); break;
     case State::kNotUnderstood:

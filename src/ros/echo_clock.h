@@ -50,6 +50,7 @@ class EchoClock {
  private:
   enum class State { kNotYet, kOff, kAtRest, kTold, kNoField, kNotUnderstood, kAlike, kStrange, kUndone, kTimes };
 
+  bool isAsked() const;
   State stateOf(const CloudLayout& layout, const CloudLayout& used, const EchoTimes& times) const;
   std::string describe(State state, const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout,
                        const EchoTimes& times) const;

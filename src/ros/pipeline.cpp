@@ -249,7 +249,7 @@ void Pipeline::followOdometry(const ScanMotion& motion) {
 
 void Pipeline::tellStrangeTimes() {
   if (!times_.problem.empty()) return events_.strange_times(times_.problem);
-  if (clock_.lacksToldField()) return events_.strange_times(clock_.deskewedBy());
+  if (clock_.lacksToldField()) return events_.strange_times("de-skewed by " + clock_.deskewedBy());
   if (!clock_.lacksTimes() || clock_.deskewedBy() == told_lack_) return;
   told_lack_ = clock_.deskewedBy();
   if (events_.not_deskewed) events_.not_deskewed(told_lack_);
