@@ -11,6 +11,7 @@
 #include <rosbag/view.h>
 #include <tf2_msgs/TFMessage.h>
 
+#include "bag/bag_cloud.h"
 #include "bag/bag_file.h"
 #include "bag/checked_message.h"
 #include "bag/ground_truth.h"
@@ -64,8 +65,9 @@ class Labeler {
     Eigen::Isometry3d base_from_sensor = Eigen::Isometry3d::Identity();
     std::string base_frame, sensor_frame;
   };
-  Mounting mounting_;  // of the newest scan
+  Mounting mounting_;  // of the sensor that is checked
   bool calibrates_;
+  OneSensor checked_sensor_;
   std::optional<LabeledScanCheck> check_;
   tf2::BufferCore tf_;
   Pipeline pipeline_;  // last: it uses the others
@@ -101,8 +103,10 @@ void Labeler::remark(const std::string& kind, const std::string& text) {
 void Labeler::take(const LabeledScan& scan) {
   summary_.times.push_back(scan.processing_time);
   summary_.echoes += scan.labels.dynamic.size();
-  if (check_) check_->check(LabeledScanCheck::questionOf(scan));
-  mounting_ = {scan.motion.base_from_sensor, scan.motion.base_frame, scan.cloud->header.frame_id};
+  if (checked_sensor_.isIt(scan.cloud->header.frame_id)) {
+    if (check_) check_->check(LabeledScanCheck::questionOf(scan));
+    mounting_ = {scan.motion.base_from_sensor, scan.motion.base_frame, scan.cloud->header.frame_id};
+  }
   const auto truth = truthOf(*scan.cloud, scan.layout);
   if (!truth.empty()) {
     summary_.evaluation.add(summary_.times.size() - 1, scan.scan.echoes, truth, asSemanticKitti(scan.labels));
@@ -122,7 +126,7 @@ void Labeler::addTransforms(const rosbag::MessageInstance& message, bool are_sta
 void Labeler::feed(const rosbag::MessageInstance& message) {
   const std::string topic = absoluteTopic(message.getTopic());
   if (topic == absoluteTopic(summary_.points)) {
-    pipeline_.addCloud(parse<sensor_msgs::PointCloud2>(message), now_.toSec());
+    pipeline_.addCloud(parseCloud(message), now_.toSec());
   } else if (!summary_.odom.empty() && topic == absoluteTopic(summary_.odom)) {
     pipeline_.addOdometry(*parse<nav_msgs::Odometry>(message));
   } else if (topic == "/tf" || topic == "/tf_static") {
@@ -189,9 +193,9 @@ std::string motionOf(OdometrySource source, const std::string& odom, const Motio
 
 LabelBagSummary chooseTopics(rosbag::View& view, const LabelBagOptions& options, const std::string& file) {
   LabelBagSummary summary;
-  summary.points = chooseTopic(view, options.points, "sensor_msgs/PointCloud2", file, "--points");
+  summary.points = chooseTopic(view, options.points, cloudTypes(), file, "--points");
   const OdometrySource source = options.config.motion.source;
-  if (usesOdometry(source)) summary.odom = chooseTopic(view, options.odom, "nav_msgs/Odometry", file, "--odom");
+  if (usesOdometry(source)) summary.odom = chooseTopic(view, options.odom, {"nav_msgs/Odometry"}, file, "--odom");
   summary.motion = motionOf(source, summary.odom, options.config.motion);
   return summary;
 }

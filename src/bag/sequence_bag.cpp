@@ -10,6 +10,7 @@
 #include <tf2_msgs/TFMessage.h>
 
 #include "bag/bag_file.h"
+#include "evaluation/scan_parts.h"
 #include "io/number_text.h"
 #include "ros/cloud_fields.h"
 
@@ -77,6 +78,23 @@ void checkTimes(const SequenceReader& sequence, double odometry_rate) {
   if ((last - first) * odometry_rate > kMostMessages) throw DataError(times + ", too long for this rate of odometry");
 }
 
+/// Until the next scan; the last one took as long as the one before [s].
+double durationOf(const SequenceReader& sequence, std::size_t scan) {
+  if (sequence.size() < 2) return 0.0;
+  const std::size_t first = std::min(scan, sequence.size() - 2);
+  return sequence.stamp(first + 1) - sequence.stamp(first);
+}
+
+SequenceScan partOf(const SequenceScan& scan, const std::vector<std::uint32_t>& echoes) {
+  SequenceScan part;
+  part.stamp = scan.stamp;
+  for (const std::uint32_t echo : echoes) {
+    part.echoes.push_back(scan.echoes[echo]);
+    part.intensities.push_back(scan.intensities[echo]);
+  }
+  return part;
+}
+
 }  // namespace
 
 sensor_msgs::PointCloud2Ptr toCloud(const SequenceScan& scan) {
@@ -100,9 +118,10 @@ SequenceBagSummary writeSequenceBag(const SequenceReader& sequence, const std::f
   checkTimes(sequence, options.odometry.rate);
   auto odometry = odometryOf(sequence, options.odometry);
   const double earliest = std::min(sequence.stamp(0), odometry.front().stamp);
-  const SequenceBagSummary summary{sequence.size(), odometry.size(), shiftFor(earliest)};
+  const SequenceBagSummary summary{sequence.size() * options.parts, odometry.size(), shiftFor(earliest)};
   for (OdometryPoint& point : odometry) point.stamp += summary.shift;
 
+  ScanParts parts(options.parts);
   BagWriter writer(file, options.compression);
   const double start = earliest + summary.shift;
   writer.write("/tf_static", ros::Time(start) - kStep, toTransform(start, kBaseFrame, kSensorFrame, Pose()),
@@ -111,8 +130,12 @@ SequenceBagSummary writeSequenceBag(const SequenceReader& sequence, const std::f
   for (std::size_t i = 0; i < sequence.size(); ++i) {
     SequenceScan scan = sequence.scan(i);
     scan.stamp += summary.shift;
-    for (; next != odometry.end() && next->stamp <= scan.stamp; ++next) writeOdometry(writer, *next);
-    writer.write("/points", ros::Time(scan.stamp) + kStep + kStep, *toCloud(scan));
+    parts.cut(toScan(SequenceScan(scan)), durationOf(sequence, i));
+    for (std::size_t k = 0; k < parts.count(); ++k) {
+      const double sent = parts[k].stamp;
+      for (; next != odometry.end() && next->stamp <= sent; ++next) writeOdometry(writer, *next);
+      writer.write("/points", ros::Time(sent) + kStep + kStep, *toCloud(partOf(scan, parts.echoesOf(k))));
+    }
     progress();
   }
   for (; next != odometry.end(); ++next) writeOdometry(writer, *next);

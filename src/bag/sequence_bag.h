@@ -15,6 +15,7 @@ namespace donex {
 struct SequenceBagOptions {
   OdometryRhythm odometry;  ///< by default the scans' own: then the node gives the labels donex_sequence gives
   rosbag::CompressionType compression = rosbag::compression::Uncompressed;
+  std::size_t parts = 1;  ///< clouds per scan, sectors of equal azimuth: of the scan's stamp, sent as the sensor turns
 };
 
 /// x, y, z, intensity as float32, unorganised, frame "velodyne".
@@ -27,7 +28,8 @@ struct SequenceBagSummary {
 };
 
 /// Topics /points (frame velodyne), /odom (odom, base_link), /tf (the same motion), /tf_static (velodyne is
-/// base_link). `progress` is called after each scan. Throws DataError.
+/// base_link). `progress` is called after each scan. Throws DataError, and
+/// std::invalid_argument where ScanParts does.
 SequenceBagSummary writeSequenceBag(const SequenceReader& sequence, const std::filesystem::path& file,
                                     const SequenceBagOptions& options, const std::function<void()>& progress);
 

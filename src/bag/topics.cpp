@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "io/data_error.h"
 
@@ -28,25 +29,30 @@ std::string listed(const Topics& topics) {
   return text;
 }
 
-std::string onlyTopic(const Topics& topics, const std::string& datatype, const std::string& file,
+bool isOneOf(const Datatypes& datatypes, const std::string& type) {
+  return std::find(datatypes.begin(), datatypes.end(), type) != datatypes.end();
+}
+
+std::string onlyTopic(const Topics& topics, const Datatypes& datatypes, const std::string& file,
                       const std::string& option) {
   std::vector<std::string> fitting;
   for (const auto& [topic, type] : topics) {
-    if (type == datatype) fitting.push_back(topic);
+    if (isOneOf(datatypes, type)) fitting.push_back(topic);
   }
   if (fitting.size() == 1) return fitting.front();
-  if (fitting.empty()) throw DataError(fmt::format("{}: has no topic of type {}{}", file, datatype, listed(topics)));
-  throw DataError(fmt::format("{}: has {} topics of type {}, choose one with {}{}", file, fitting.size(), datatype,
-                              option, listed(topics)));
+  const std::string types = fmt::format("{}", fmt::join(datatypes, " or "));
+  if (fitting.empty()) throw DataError(fmt::format("{}: has no topic of type {}{}", file, types, listed(topics)));
+  throw DataError(fmt::format("{}: has {} topics of type {}, choose one with {}{}", file, fitting.size(), types, option,
+                              listed(topics)));
 }
 
-std::string namedTopic(const Topics& topics, const std::string& wanted, const std::string& datatype,
+std::string namedTopic(const Topics& topics, const std::string& wanted, const Datatypes& datatypes,
                        const std::string& file, const std::string& option) {
   for (const auto& [topic, type] : topics) {
     if (absoluteTopic(topic) != absoluteTopic(wanted)) continue;
-    if (type == datatype) return topic;
-    throw DataError(
-        fmt::format("{}: topic {} is of type {}, must be {}{}", file, topic, type, datatype, listed(topics)));
+    if (isOneOf(datatypes, type)) return topic;
+    throw DataError(fmt::format("{}: topic {} is of type {}, must be {}{}", file, topic, type,
+                                fmt::join(datatypes, " or "), listed(topics)));
   }
   throw DataError(fmt::format("{}: has no topic {} ({}){}", file, wanted, option, listed(topics)));
 }
@@ -55,11 +61,11 @@ std::string namedTopic(const Topics& topics, const std::string& wanted, const st
 
 std::string absoluteTopic(const std::string& topic) { return topic.rfind('/', 0) == 0 ? topic : "/" + topic; }
 
-std::string chooseTopic(rosbag::View& view, const std::string& wanted, const std::string& datatype,
+std::string chooseTopic(rosbag::View& view, const std::string& wanted, const Datatypes& datatypes,
                         const std::string& file, const std::string& option) {
   const Topics topics = topicsOf(view);
-  return wanted.empty() ? onlyTopic(topics, datatype, file, option)
-                        : namedTopic(topics, wanted, datatype, file, option);
+  return wanted.empty() ? onlyTopic(topics, datatypes, file, option)
+                        : namedTopic(topics, wanted, datatypes, file, option);
 }
 
 bool hasTopicOf(rosbag::View& view, const std::string& datatype) {

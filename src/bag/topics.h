@@ -2,14 +2,17 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <rosbag/view.h>
 
 namespace donex {
 
-/// The topic `wanted` (with or without a leading slash), which must be of type `datatype`; for an empty `wanted` the
-/// only topic of that type. Throws DataError that lists the bag's topics; `file` and `option` are for it.
-std::string chooseTopic(rosbag::View& view, const std::string& wanted, const std::string& datatype,
+using Datatypes = std::vector<std::string>;
+
+/// The topic `wanted` (with or without a leading slash), which must be of one of these types; for an empty `wanted` the
+/// only topic that is. Throws DataError that lists the bag's topics; `file` and `option` are for it.
+std::string chooseTopic(rosbag::View& view, const std::string& wanted, const Datatypes& datatypes,
                         const std::string& file, const std::string& option);
 
 bool hasTopicOf(rosbag::View& view, const std::string& datatype);

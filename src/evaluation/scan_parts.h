@@ -22,6 +22,9 @@ class ScanParts {
   /// A part of the last cut, in the order of their stamps.
   const Scan& operator[](std::size_t part) const { return parts_[part]; }
 
+  /// Which echoes of the whole scan a part of the last cut has.
+  const std::vector<std::uint32_t>& echoesOf(std::size_t part) const { return echoes_of_part_.at(part); }
+
   /// Enters the labels of a part of the last cut into those of the whole scan, which have room for all of them.
   void putBack(std::size_t part, const EchoLabels& labels, EchoLabels& whole) const;
 

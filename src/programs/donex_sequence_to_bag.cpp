@@ -5,6 +5,7 @@
 
 #include "bag/bag_file.h"
 #include "bag/sequence_bag.h"
+#include "evaluation/scan_parts.h"
 #include "io/number_text.h"
 #include "io/outputs.h"
 #include "programs/program.h"
@@ -49,6 +50,9 @@ int main(int argc, char** argv) {
   app.add_option("--odom-offset", arguments.options.odometry.offset,
                  "moves the odometry against the scans [s], so that poses are interpolated; by default 0")
       ->check(CLI::Range(-10.0, 10.0));
+  app.add_option("--parts", arguments.options.parts,
+                 "clouds per scan, sectors that are sent as the sensor turns; by default 1")
+      ->check(CLI::Range(std::size_t{1}, donex::ScanParts::kMost));
   app.add_option("--compression", arguments.compression, "none, lz4 or bz2; by default none")
       ->check(CLI::IsMember({"none", "lz4", "bz2"}));
   donex::addOverwrite(app, arguments.overwrite);

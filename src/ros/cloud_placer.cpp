@@ -90,4 +90,13 @@ bool liesOnTheGround(const std::vector<Eigen::Vector3f>& echoes) {
   return all >= kEnough && 10 * level > 3 * all && 50 * below < all;
 }
 
+std::string OriginWatch::follow(const std::vector<Eigen::Vector3f>& echoes, bool is_vehicle, const std::string& frame) {
+  if (!is_vehicle || on_the_ground_ >= kCertain) return "";
+  on_the_ground_ = liesOnTheGround(echoes) ? on_the_ground_ + 1 : 0;
+  if (on_the_ground_ < kCertain) return "";
+  return "the clouds are told in the vehicle's frame '" + frame +
+         "', and its origin lies on the ground, where no sensor is: set sensor_frame, or origin_x, origin_y and "
+         "origin_z, to where it is";
+}
+
 }  // namespace donex

@@ -60,7 +60,8 @@ void Diagnostics::odometryArrived(const ros::Time& stamp) {
 
 void Diagnostics::scanPublished(const LabeledScan& scan) {
   const auto now = Clock::now();
-  published_.push_back({now, scan.processing_time, seconds(now - scan.received)});
+  published_.push_back(
+      {now, scan.processing_time, seconds(now - scan.received), ros::Time::now().toSec() - scan.last_echo});
   if (scan.motion.tracked) tracking_ = describe(scan.motion.tracked->status);
 }
 
@@ -138,10 +139,11 @@ double Diagnostics::medianProcessing() const {
 }
 
 void Diagnostics::addFigures(DiagnosticStatusWrapper& status) const {
-  std::vector<double> processing, latency;
+  std::vector<double> processing, latency, since_last_echo;
   for (const Figures& figures : published_) {
     processing.push_back(figures.processing);
     latency.push_back(figures.latency);
+    since_last_echo.push_back(figures.since_last_echo);
   }
   status.addf("clouds in [Hz]", "%.2f", rateOf(arrivals_));
   status.addf("clouds labelled [Hz]", "%.2f", publishedRate());
@@ -152,6 +154,8 @@ void Diagnostics::addFigures(DiagnosticStatusWrapper& status) const {
   status.addf("time a scan, p99 [ms]", "%.2f", 1e3 * quantile(processing, 0.99));
   status.addf("latency in to out, median [ms]", "%.2f", 1e3 * quantile(latency, 0.5));
   status.addf("latency in to out, p99 [ms]", "%.2f", 1e3 * quantile(latency, 0.99));
+  status.addf("latency last echo to labels, median [ms]", "%.2f", 1e3 * quantile(since_last_echo, 0.5));
+  status.addf("latency last echo to labels, p99 [ms]", "%.2f", 1e3 * quantile(since_last_echo, 0.99));
   status.addf("memory of the grid [MB]", "%.1f", static_cast<double>(pipeline_.detector().memoryBytes()) / 1e6);
   status.addf("memory of the process [MB]", "%.1f", residentMegabytes());
 }

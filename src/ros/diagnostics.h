@@ -48,6 +48,7 @@ class Diagnostics {
   struct Figures {
     Clock::time_point published;
     double processing, latency;  // [s]
+    double since_last_echo;      // by the clock of the stamps [s]
   };
   using Times = std::deque<Clock::time_point>;
 

@@ -11,6 +11,7 @@
 #include <tf2_ros/transform_listener.h>
 
 #include "donex/memory_bound.h"
+#include "ros/cloud_subscription.h"
 #include "ros/diagnostics.h"
 #include "ros/odometry_monitor.h"
 #include "ros/odometry_publisher.h"
@@ -55,6 +56,7 @@ class DonexNode::Implementation {
 
  private:
   void onCloud(const sensor_msgs::PointCloud2ConstPtr& cloud);
+  void onUnreadable(const std::string& why);
   void onOdometry(const nav_msgs::OdometryConstPtr& odometry);
   bool onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response);
   void onChange(const Config& config);
@@ -109,8 +111,10 @@ DonexNode::Implementation::Implementation(const ros::NodeHandle& nh, const ros::
   reset_service_ = pnh_.advertiseService("reset", &Implementation::onReset, this);
   reconfigure_ = std::make_unique<Reconfigure>(pnh_, config_, [this](const Config& config) { onChange(config); });
 
+  const CloudReceiver receiver{[this](const sensor_msgs::PointCloud2ConstPtr& cloud) { onCloud(cloud); },
+                               [this](const std::string& why) { onUnreadable(why); }};
+  cloud_subscriber_ = subscribeToClouds(nh_, "points", kUnbounded, receiver);
   const auto hints = ros::TransportHints().tcpNoDelay();
-  cloud_subscriber_ = nh_.subscribe("points", kUnbounded, &Implementation::onCloud, this, hints);
   odometry_subscriber_ = nh_.subscribe("odom", kUnbounded, &Implementation::onOdometry, this, hints);
   retry_timer_ = nh_.createWallTimer(ros::WallDuration(kRetryPeriod), [this](const ros::WallTimerEvent&) {
     if (pipeline_.waiting() != 0) schedule();
@@ -162,6 +166,10 @@ void DonexNode::Implementation::onCloud(const sensor_msgs::PointCloud2ConstPtr& 
     pipeline_.addCloud(cloud, ros::Time::now().toSec());
     schedule();
   });
+}
+
+void DonexNode::Implementation::onUnreadable(const std::string& why) {
+  guarded("cloud", [&] { pipeline_.refuseCloud("topic " + cloud_subscriber_.getTopic() + ": " + why); });
 }
 
 void DonexNode::Implementation::onOdometry(const nav_msgs::OdometryConstPtr& odometry) {

@@ -11,7 +11,7 @@ const char* describe(DropReason reason) {
     case DropReason::kOdometryGap: return "gap in the odometry";
     case DropReason::kNoTransform: return "no transform";
     case DropReason::kOutOfOrder: return "out of order";
-    case DropReason::kDuplicate: return "duplicate stamp";
+    case DropReason::kDuplicate: return "duplicate";
     case DropReason::kTimeRanBack: return "time ran back";
     case DropReason::kInternalError: return "internal error";
     case DropReason::kLost: return "ego motion not found";

@@ -14,8 +14,8 @@ enum class DropReason {
   kBeforeOdometry,  ///< older than the oldest odometry
   kOdometryGap,     ///< odometry is missing around its stamp
   kNoTransform,     ///< tf does not connect its frame with the vehicle's
-  kOutOfOrder,      ///< older than a cloud that is labelled already
-  kDuplicate,       ///< of the same stamp as another cloud
+  kOutOfOrder,      ///< older than a labelled cloud of the same sensor, or far behind those of others
+  kDuplicate,       ///< the same cloud again: frame, stamp and content
   kTimeRanBack,     ///< waiting when time ran back
   kInternalError,   ///< an exception
   kLost,            ///< the ego motion was to be found in the clouds, and this one does not tell it

@@ -24,6 +24,13 @@ bool isChecked(const MotionConfig& config, OdometrySource source) {
   return config.odometry_check && is_told;
 }
 
+bool OneSensor::isIt(const std::string& frame) {
+  const bool is_gone = frame_.empty() || ++others_ > kGone;
+  if (is_gone) frame_ = frame;
+  if (frame == frame_) others_ = 0;
+  return frame == frame_;
+}
+
 LabeledScanCheck::LabeledScanCheck(const MotionConfig& config, bool keep_all) : check_(optionsFor(config, keep_all)) {}
 
 LabeledScanCheck::Question LabeledScanCheck::questionOf(const LabeledScan& scan) {
@@ -57,6 +64,7 @@ OdometryMonitor::~OdometryMonitor() {
 }
 
 void OdometryMonitor::add(const LabeledScan& scan) {
+  if (!sensor_.isIt(scan.cloud->header.frame_id)) return;
   auto question = LabeledScanCheck::questionOf(scan);
   {
     const std::lock_guard<std::mutex> lock(mutex_);

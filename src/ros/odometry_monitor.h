@@ -5,6 +5,7 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -17,6 +18,17 @@ namespace donex {
 
 /// Whether the ego motion of this source is somebody else's word, which can be checked.
 bool isChecked(const MotionConfig& config, OdometrySource source);
+
+/// Scans are registered against those of the same sensor: of several on a topic one is checked.
+class OneSensor {
+ public:
+  bool isIt(const std::string& frame);
+
+ private:
+  static constexpr int kGone = 100;  // clouds of others since its last one: another is taken
+  std::string frame_;
+  int others_ = 0;  // clouds in a row
+};
 
 /// OdometryCheck on labelled scans; the echoes are read from the cloud once more, as they were measured.
 class LabeledScanCheck {
@@ -62,6 +74,7 @@ class OdometryMonitor {
  private:
   void run();
 
+  OneSensor sensor_;
   LabeledScanCheck check_;
   Tell tell_;
   std::mutex mutex_;

@@ -40,10 +40,19 @@ void Pipeline::addCloud(const sensor_msgs::PointCloud2ConstPtr& cloud, double no
 
   WaitingCloud waiting{cloud, std::get<CloudLayout>(verdict), counts_.clouds_in, now, std::chrono::steady_clock::now()};
   observeTimes(waiting);
-  const bool is_old = last_labeled_ && cloud->header.stamp < *last_labeled_;
-  if (is_old) return suspect(std::move(waiting));
-  dropSuspect();
+  switch (order_.judge(*cloud)) {
+    case Arrival::kDuplicate: return drop(DropReason::kDuplicate, order_.why());
+    case Arrival::kWentBack: return suspect(std::move(waiting));
+    case Arrival::kOtherClock: return drop(DropReason::kOutOfOrder, order_.why());
+    case Arrival::kClockIsLeft: startAnew("only clouds of another clock come: " + order_.why()); break;
+    case Arrival::kInTime: dropSuspect(); break;
+  }
   place(std::move(waiting));
+}
+
+void Pipeline::refuseCloud(const std::string& why) {
+  ++counts_.clouds_in;
+  drop(DropReason::kBadLayout, why);
 }
 
 /// A cloud that waits has perhaps been read in the unit before: it is read again.
@@ -68,8 +77,7 @@ void Pipeline::place(WaitingCloud cloud) {
   const ros::Time stamp = cloud.cloud->header.stamp;
   const auto later = [](const ros::Time& time, const WaitingCloud& other) { return time < other.cloud->header.stamp; };
   const auto place = std::upper_bound(waiting_.begin(), waiting_.end(), stamp, later);
-  const bool is_waiting = place != waiting_.begin() && std::prev(place)->cloud->header.stamp == stamp;
-  if (is_waiting || last_labeled_ == stamp) return drop(DropReason::kDuplicate, "a second " + cloudOf(stamp));
+  order_.admit(*cloud.cloud);
   waiting_.insert(place, std::move(cloud));
   if (waiting_.size() <= static_cast<std::size_t>(config_.node.queue_size)) return;
   const ros::Time oldest = waiting_.front().cloud->header.stamp;
@@ -133,7 +141,7 @@ void Pipeline::startAnew(const std::string& why) {
   motion_.reset();
   placer_.reset();
   reset();
-  last_labeled_.reset();
+  order_.reset();
   events_.forgotten("time ran back (" + why + "): buffers and grid are cleared");
   if (odometry) use(*odometry);
   if (cloud) place(*cloud);
@@ -211,13 +219,16 @@ void Pipeline::label(const WaitingCloud& waiting, const ScanMotion& motion) {
   moveToOrigin();
   followTrack(motion);
   followOdometry(motion);
+  // Behind another sensor's: where it was seen is its own time's, when it is learnt of is not.
+  scan_.stamp = std::max(scan_.stamp, order_.newestLabeled().value_or(stamp).toSec());
   detector_->process(scan_, labels_);
+  scan_.stamp = stamp.toSec();
   watchFlood();
   remark();
   motion_.learn(labels_.dynamic);
-  last_labeled_ = stamp;
+  order_.labeled(waiting.cloud->header);
   events_.labeled({waiting.cloud, waiting.layout, scan_, labels_, *detector_, motion.odom_frame, motion,
-                   waiting.received, parsing_time_ + secondsSince(start)});
+                   stamp.toSec() + times_.last, waiting.received, parsing_time_ + secondsSince(start)});
   tellStrangeTimes();
   followTimes(motion);
 }
@@ -226,7 +237,7 @@ void Pipeline::label(const WaitingCloud& waiting, const ScanMotion& motion) {
 void Pipeline::followTrack(const ScanMotion& motion) {
   if (!motion.tracked) return;
   if (motion.tracked->status == TrackingStatus::kDegenerate) ++counts_.degenerate;
-  const bool is_another_track = motion.tracked->is_new_track && last_labeled_;
+  const bool is_another_track = motion.tracked->is_new_track && order_.newestLabeled();
   if (!is_another_track) return;
   reset();
   events_.forgotten("the ego motion was lost, and is found anew in the clouds: the grid is forgotten");
@@ -236,7 +247,8 @@ void Pipeline::followTrack(const ScanMotion& motion) {
 void Pipeline::followOdometry(const ScanMotion& motion) {
   const bool is_told = config_.motion.odometry_check && !motion.tracked && motion_.source() != OdometrySource::kNone;
   const bool may_forget = !needsWholeDrive(config_.method);  // what has been seen of a whole drive is its answer
-  if (!is_told || !may_forget) return;
+  const bool is_next = !order_.newestLabeled() || scan_.stamp > order_.newestLabeled()->toSec();
+  if (!is_told || !may_forget || !is_next) return;
   if (motion.track_number != track_number_) jump_.reset();
   track_number_ = motion.track_number;
   const double jump = jump_.follow(scan_.stamp, scan_.odom_from_base);
@@ -255,19 +267,11 @@ void Pipeline::tellStrangeTimes() {
   if (events_.not_deskewed) events_.not_deskewed(told_lack_);
 }
 
-/// A cloud that somebody has moved into the vehicle's frame does not say where its sensor is.
 void Pipeline::suspectOrigin(const ScanMotion& motion, const std::string& cloud_frame) {
-  constexpr int kCertain = 5;  // clouds in a row
-  const CloudConfig& cloud = config_.cloud;
-  const bool is_told =
-      motion.sensor_from_cloud || Eigen::Vector3d(cloud.origin_x, cloud.origin_y, cloud.origin_z).norm() > 0.0;
+  const bool is_told = motion.sensor_from_cloud || !origin().isZero(0.0);
   const bool is_vehicle = motion.base_from_sensor.isApprox(Eigen::Isometry3d::Identity()) && !motion.tracked;
-  if (is_told || !is_vehicle || on_the_ground_ >= kCertain) return;
-  on_the_ground_ = liesOnTheGround(scan_.echoes) ? on_the_ground_ + 1 : 0;
-  if (on_the_ground_ < kCertain || !events_.strange_origin) return;
-  events_.strange_origin("the clouds are told in the vehicle's frame '" + cloud_frame +
-                         "', and its origin lies on the ground, where no sensor is: set sensor_frame, or origin_x, "
-                         "origin_y and origin_z, to where it is");
+  const std::string strange = origin_watch_.follow(scan_.echoes, !is_told && is_vehicle, cloud_frame);
+  if (!strange.empty() && events_.strange_origin) events_.strange_origin(strange);
 }
 
 void Pipeline::watchFlood() {

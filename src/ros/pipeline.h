@@ -15,6 +15,7 @@
 
 #include "core/motion/odometry_jump.h"
 #include "donex/detector.h"
+#include "ros/cloud_order.h"
 #include "ros/cloud_placer.h"
 #include "ros/cloud_remarks.h"
 #include "ros/conversions.h"
@@ -34,6 +35,7 @@ struct LabeledScan {
   const Detector& detector;
   const std::string& odom_frame;
   const ScanMotion& motion;
+  double last_echo;  ///< when it was measured: its own time, where it has any, else the stamp [s]
   std::chrono::steady_clock::time_point received;
   double processing_time;  ///< parsing, de-skewing and judging [s]
 };
@@ -83,6 +85,8 @@ class Pipeline {
   Pipeline(const Config& config, const tf2::BufferCore& tf, PipelineEvents events, std::shared_ptr<Detector> detector);
 
   void addCloud(const sensor_msgs::PointCloud2ConstPtr& cloud, double now);
+  /// A message that should have been a cloud, and why it is none: counted as one that came and was dropped.
+  void refuseCloud(const std::string& why);
   void addOdometry(const nav_msgs::Odometry& odometry);
 
   /// Labels or drops the oldest waiting cloud when its time has come; false when there was nothing to do.
@@ -149,15 +153,15 @@ class Pipeline {
   OdometryJump jump_;
   FloodWatch flood_;
   std::size_t track_number_ = 0;
-  int on_the_ground_ = 0;   // clouds in a row whose origin lies there
+  OriginWatch origin_watch_;
   int without_ground_ = 0;  // clouds in a row
   std::shared_ptr<Detector> detector_;
   EchoClock clock_;
   std::string told_lack_;  // of times, as it was last told
   bool watched_ = false;
   PipelineCounts counts_;
+  CloudOrder order_;
   std::deque<WaitingCloud> waiting_;  // by stamp
-  std::optional<ros::Time> last_labeled_;
 
   // One old message is a straggler, two in a row are a clock that ran back: the first is kept until that is known.
   std::optional<WaitingCloud> suspect_cloud_;

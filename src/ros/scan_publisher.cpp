@@ -10,12 +10,15 @@ using sensor_msgs::PointCloud2;
 
 constexpr std::uint32_t kQueue = 5;  // messages that wait for a slow listener
 
+/// The same of labels, which nobody is to miss: a turn in forty parts, judged while the listener was busy.
+constexpr std::uint32_t kLabelQueue = 50;
+
 bool isHeard(const ros::Publisher& publisher) { return publisher.getNumSubscribers() != 0; }
 
 }  // namespace
 
 ScanPublisher::ScanPublisher(ros::NodeHandle pnh)
-    : labeled_(pnh.advertise<PointCloud2>("labeled_points", kQueue)),
+    : labeled_(pnh.advertise<PointCloud2>("labeled_points", kLabelQueue)),
       dynamic_(pnh.advertise<PointCloud2>("dynamic_points", kQueue)),
       static_(pnh.advertise<PointCloud2>("static_points", kQueue)),
       objects_(pnh.advertise<MovingObjects>("objects", kQueue)),

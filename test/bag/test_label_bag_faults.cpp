@@ -13,6 +13,8 @@ namespace {
 namespace fs = std::filesystem;
 using sensor_msgs::PointCloud2;
 
+const std::string kTypes = "sensor_msgs/PointCloud2 or livox_ros_driver/CustomMsg or livox_ros_driver2/CustomMsg";
+
 class LabelBagFaults : public testing::Test {
  protected:
   void SetUp() override {
@@ -67,12 +69,12 @@ TEST_F(LabelBagFaults, SpoiledInside) {
 
 TEST_F(LabelBagFaults, Empty) {
   writeOnly(in_, [](rosbag::Bag&) {});
-  expectFault("has no topic of type sensor_msgs/PointCloud2; it has no topics at all");
+  expectFault("has no topic of type " + kTypes + "; it has no topics at all");
 }
 
 TEST_F(LabelBagFaults, NoClouds) {
   writeOnly(in_, [](rosbag::Bag& bag) { bag.write("/log", ros::Time(1.0), test::text("hello")); });
-  expectFault("has no topic of type sensor_msgs/PointCloud2; its topics are:\n  /log (std_msgs/String)");
+  expectFault("has no topic of type " + kTypes + "; its topics are:\n  /log (std_msgs/String)");
 }
 
 TEST_F(LabelBagFaults, NoOdometry) {
@@ -82,7 +84,7 @@ TEST_F(LabelBagFaults, NoOdometry) {
 
 TEST_F(LabelBagFaults, SeveralCandidates) {
   test::change(in_, [](rosbag::Bag& bag) { bag.write("/rear", ros::Time(50.0), PointCloud2()); });
-  expectFault("has 2 topics of type sensor_msgs/PointCloud2, choose one with --points; its topics are:");
+  expectFault("has 2 topics of type " + kTypes + ", choose one with --points; its topics are:");
 }
 
 TEST_F(LabelBagFaults, NoSuchTopic) {

@@ -58,6 +58,31 @@ TEST(SequenceBag, HasTheRateOfOdometryThatIsAskedFor) {
   EXPECT_EQ(test::readTopic<nav_msgs::Odometry>(file, "/odom").size(), 101U);
 }
 
+/// Each scan's echoes once, the parts of its stamp at times of their own, and every part labelled.
+TEST(SequenceBag, ScansMayBeSentInParts) {
+  const TemporaryDirectory directory;
+  const auto file = directory.path() / "drive.bag", out = directory.path() / "out.bag";
+  constexpr std::size_t kScans = 6, kParts = 10;
+  SequenceBagOptions options;
+  options.parts = kParts;
+  test::writeDriveBag(directory.path() / "drive", file, kScans, options);
+  const SequenceReader sequence(directory.path() / "drive");
+  const auto clouds = test::readTopic<PointCloud2>(file, "/points");
+  ASSERT_EQ(clouds.size(), kScans * kParts);
+  for (std::size_t i = 0; i < kScans; ++i) {
+    std::size_t echoes = 0;
+    for (std::size_t k = 0; k < kParts; ++k) {
+      echoes += clouds[i * kParts + k]->width;
+      EXPECT_EQ(clouds[i * kParts + k]->header.stamp, ros::Time(sequence.stamp(i)));
+    }
+    EXPECT_EQ(echoes, sequence.scan(i).echoes.size());
+  }
+  rosbag::Bag bag(file.string());
+  rosbag::View view(bag, rosbag::TopicQuery("/points"));
+  EXPECT_NEAR((view.getEndTime() - view.getBeginTime()).toSec(), 0.1 * (kScans - 0.1), 1e-5);
+  EXPECT_EQ(test::label(file, out).counts.clouds_labeled, kScans * kParts);
+}
+
 TEST(SequenceBag, TimesThatABagCannotHoldAreMoved) {
   const TemporaryDirectory directory;
   const auto file = directory.path() / "drive.bag";

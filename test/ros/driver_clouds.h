@@ -80,6 +80,12 @@ inline std::vector<DriverField> livoxFields() {
       {{"intensity", P::FLOAT32, 12}, {"tag", P::UINT8, 16}, {"line", P::UINT8, 17}, {"timestamp", P::FLOAT64, 18}});
 }
 
+inline std::vector<DriverField> livoxCustomFields() {
+  using P = PointField;
+  return positionAnd(
+      {{"intensity", P::FLOAT32, 12}, {"tag", P::UINT8, 16}, {"line", P::UINT8, 17}, {"offset_time", P::UINT32, 20}});
+}
+
 inline const std::vector<DriverCloud>& driverClouds() {
   constexpr StampedAt kFirst = StampedAt::kFirstEcho, kLast = StampedAt::kLastEcho;
   static const std::vector<DriverCloud> clouds{
@@ -95,7 +101,9 @@ inline const std::vector<DriverCloud>& driverClouds() {
       // rslidar_sdk, POINT_TYPE XYZIRT: columns and rows exchanged, NaN kept unless dense_points.
       {"robosense", packedFields(), 26, 40, kLast, "timestamp", 1.0, true, kNotANumber},
       // livox_ros_driver2, xfer_format 0: times in nanoseconds as a double.
-      {"livox", livoxFields(), 26, 1, kFirst, "timestamp", 1e9, true, 0.0}};
+      {"livox", livoxFields(), 26, 1, kFirst, "timestamp", 1e9, true, 0.0},
+      // livox_ros_driver and livox_ros_driver2, CustomMsg, as livoxCloud makes a cloud of it.
+      {"livox custom", livoxCustomFields(), 24, 1, kFirst, "offset_time", 1e9, false, 0.0}};
   return clouds;
 }
 

@@ -60,7 +60,7 @@ inline Config smallConfig(OdometrySource source = OdometrySource::kPose) {
 }
 
 struct Labeled {
-  double stamp;
+  double stamp, last_echo;
   Eigen::Isometry3d odom_from_base, base_from_sensor;
   std::vector<Eigen::Vector3f> echoes;
   EchoLabels labels;
@@ -99,8 +99,9 @@ class PipelineRig {
   PipelineEvents events() {
     PipelineEvents events;
     events.labeled = [this](const LabeledScan& scan) {
-      labeled.push_back({scan.scan.stamp, scan.scan.odom_from_base, scan.scan.base_from_sensor, scan.scan.echoes,
-                         scan.labels, labelCloud(*scan.cloud, scan.layout, scan.labels)});
+      labeled.push_back({scan.cloud->header.stamp.toSec(), scan.last_echo, scan.scan.odom_from_base,
+                         scan.scan.base_from_sensor, scan.scan.echoes, scan.labels,
+                         labelCloud(*scan.cloud, scan.layout, scan.labels)});
     };
     events.dropped = [this](DropReason, const std::string& text) { drops.push_back(text); };
     events.refused = [this](OdometryRefusal, const std::string& text) { refusals.push_back(text); };

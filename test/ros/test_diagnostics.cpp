@@ -118,6 +118,7 @@ TEST_F(DiagnosticsTest, KeyFiguresAreNumbers) {
   tellNow();
   for (const auto* key : {"clouds in [Hz]", "clouds labelled [Hz]", "odometry in [Hz]", "time a scan, median [ms]",
                           "time a scan, p99 [ms]", "latency in to out, median [ms]", "latency in to out, p99 [ms]",
+                          "latency last echo to labels, median [ms]", "latency last echo to labels, p99 [ms]",
                           "memory of the grid [MB]", "memory of the process [MB]"}) {
     EXPECT_GT(numberOf(key), 0.0) << key << ": " << valueOf(key);
   }

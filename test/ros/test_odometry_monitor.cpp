@@ -53,6 +53,19 @@ TEST(OdometryMonitor, NamesWhatIsWrong) {
   EXPECT_NEAR(check.finding().cause.figure, 1.1, 0.002);
 }
 
+TEST(OdometryMonitor, ChecksOneSensorOfSeveralUntilItIsGone) {
+  OneSensor sensor;
+  for (int i = 0; i < 200; ++i) {
+    EXPECT_TRUE(sensor.isIt("front"));
+    EXPECT_FALSE(sensor.isIt("rear"));
+    EXPECT_FALSE(sensor.isIt("left"));
+  }
+  int others = 0;
+  while (!sensor.isIt("rear")) ++others;
+  EXPECT_EQ(others, 98) << "a hundred, with the two that came before";
+  EXPECT_FALSE(sensor.isIt("front"));
+}
+
 TEST(OdometryMonitor, DoesTheSameOnAThreadOfItsOwn) {
   std::mutex mutex;
   std::condition_variable told;

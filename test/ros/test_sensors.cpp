@@ -37,7 +37,7 @@ const std::multimap<std::string, std::string> kDriverOf{
     {"xt32", "hesai 2.0"},   {"rs16", "robosense"},
     {"rs32", "robosense"},   {"ruby", "robosense"},
     {"bpearl", "robosense"}, {"mid360", "livox"},
-    {"hap", "livox"},
+    {"hap", "livox"},        {"livox_custom", "livox custom"},
 };
 
 /// When ray `i` was fired, after the scan's start [s].

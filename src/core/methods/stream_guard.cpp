@@ -19,9 +19,9 @@ void check(const Eigen::Isometry3d& pose, const char* name) {
 void StreamGuard::admit(const Scan& scan) {
   check(scan.odom_from_base, "pose of the vehicle");
   check(scan.base_from_sensor, "mounting of the sensor");
-  const bool is_later = scan.stamp > last_stamp_ && std::isfinite(scan.stamp);
-  if (!is_later) {
-    throw std::invalid_argument("scan at " + std::to_string(scan.stamp) + " s is not later than the last one at " +
+  const bool is_in_order = scan.stamp >= last_stamp_ && std::isfinite(scan.stamp);
+  if (!is_in_order) {
+    throw std::invalid_argument("scan at " + std::to_string(scan.stamp) + " s is earlier than the last one at " +
                                 std::to_string(last_stamp_) + " s");
   }
   last_stamp_ = scan.stamp;

@@ -9,8 +9,9 @@ namespace donex {
 
 class StreamGuard {
  public:
-  /// Throws std::invalid_argument where the scan's stamp is not later than the last one's, or where a
-  /// stamp or pose is not finite, not rigid, or farther than kFarthestPose from the odometry's origin.
+  /// Throws std::invalid_argument where the scan's stamp is earlier than the last one's (sensors whose clocks are
+  /// synchronised share their stamps), or where a stamp or pose is not finite, not rigid, or farther than kFarthestPose
+  /// from the odometry's origin.
   void admit(const Scan& scan);
   void reset() { last_stamp_ = -std::numeric_limits<double>::infinity(); }
 

@@ -1,4 +1,5 @@
 // Scans that a stream must not hold are refused before they touch a memory.
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -37,7 +38,7 @@ TEST_P(Refusals, LeaveTheMemoryAsItWas) {
       EXPECT_THROW(detector->process(bad, unused), std::invalid_argument);
     };
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    refuses([&](Scan& s) { s.stamp = drive[k].scan.stamp; });
+    refuses([&](Scan& s) { s.stamp = std::nextafter(drive[k].scan.stamp, 0.0); });
     refuses([](Scan& s) { s.stamp -= 1.0; });
     refuses([](Scan& s) { s.stamp = kNan; });
     refuses([](Scan& s) { s.stamp = std::numeric_limits<double>::infinity(); });
@@ -55,6 +56,14 @@ TEST_P(Refusals, LeaveTheMemoryAsItWas) {
 INSTANTIATE_TEST_SUITE_P(Methods, Refusals,
                          ::testing::Values(std::pair{Method::kDonex3d, false}, std::pair{Method::kDonex2d, false},
                                            std::pair{Method::kDonex3d, true}, std::pair{Method::kDonex2d, true}));
+
+TEST(StreamGuard, SensorsMayShareAStamp) {
+  StreamGuard guard;
+  Scan scan;
+  scan.stamp = 5.0;
+  guard.admit(scan);
+  EXPECT_NO_THROW(guard.admit(scan));
+}
 
 TEST(StreamGuard, AfterAResetTimeMayStartAgain) {
   StreamGuard guard;
