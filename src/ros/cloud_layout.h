@@ -46,8 +46,10 @@ struct TimeField {
   std::optional<double> unit;  ///< what one written unit is [s], where it is not the encoding's (TimeUnit)
   std::string name;
   bool is_guess = false;  ///< the name only looks like a time: of use where a unit makes it one (TimeUnit)
-  /// As written: what lies beyond is no time of the scan, and taken for the nearest that is (TimeUnit).
+  /// As written: what lies beyond is no time of the scan (TimeUnit).
   double least = -std::numeric_limits<double>::infinity(), most = std::numeric_limits<double>::infinity();
+  /// ... and is taken for the nearer end of what nearly all echoes span: nothing waits for a motion after the scan.
+  double first = least, last = most;
 };
 
 /// A readable cloud: every offset below lies within the data, for every echo.

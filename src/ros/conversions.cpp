@@ -100,6 +100,8 @@ class TimeReader {
         swap_(swap),
         least_(field.least),
         most_(field.most),
+        first_(field.first),
+        last_(field.last),
         unit_by_magnitude_(field.encoding == TimeEncoding::kAuto) {
     switch (field.encoding) {
       case TimeEncoding::kRelativeSeconds: break;
@@ -118,8 +120,11 @@ class TimeReader {
     return (is_nanoseconds ? 1e-9 : scale_) * written - origin_;
   }
 
-  /// The nearest that may be a time of the scan; of NaN the least.
-  double within(double written) const { return std::min(std::max(least_, written), most_); }
+  /// Of what is no time of the scan its nearest end; of NaN the first.
+  double within(double written) const {
+    if (written > most_) return last_;
+    return written >= least_ ? written : first_;
+  }
 
   /// In no unit yet.
   double written(const std::uint8_t* point) const { return number(point + offset_); }
@@ -137,7 +142,7 @@ class TimeReader {
   std::uint32_t offset_;
   std::uint8_t datatype_;
   bool swap_;
-  double least_, most_;  // as written
+  double least_, most_, first_, last_;  // as written
   bool unit_by_magnitude_;
   double scale_ = 1.0, origin_ = 0.0;  // [s a unit], [s]
 };

@@ -53,9 +53,8 @@ void EchoClock::read(const sensor_msgs::PointCloud2& cloud, const CloudLayout& l
     used.time.reset();
   }
   parseEchoes(cloud, used, echoes, times);
-  if (frame_.empty()) frame_ = cloud.header.frame_id;
   // Who tells the encoding means it.
-  is_compared_ = !times.empty() && !layout.time->is_told && cloud.header.frame_id == frame_;
+  is_compared_ = !times.empty() && !layout.time->is_told;
   if (is_compared_) {
     first_ = times.first;
     last_ = times.last;
@@ -80,6 +79,12 @@ bool EchoClock::follow(double stamp, const Eigen::Isometry3d& odom_from_sensor) 
   reading_finding_ = text.str();
   state_ = State::kNotYet;
   return true;
+}
+
+std::string EchoClock::untoldLack() {
+  const bool is_lack = state_ == State::kNoField || state_ == State::kNotUnderstood || state_ == State::kAlike;
+  if (!is_lack || deskewed_by_ == told_lack_) return "";
+  return told_lack_ = deskewed_by_;
 }
 
 EchoClock::State EchoClock::stateOf(const CloudLayout& layout, const CloudLayout& used, const EchoTimes& times) const {
@@ -123,6 +128,23 @@ std::string EchoClock::describe(State state, const sensor_msgs::PointCloud2& clo
       break;
   }
   return text.str();
+}
+
+EchoClock& EchoClocks::of(const std::string& frame) {
+  if (clocks_.size() >= kMostFrames && clocks_.count(frame) == 0) clocks_.clear();
+  return clocks_.try_emplace(frame, config_).first->second;
+}
+
+std::string EchoClocks::deskewedBy() const {
+  if (clocks_.empty()) return "not known yet";
+  if (clocks_.size() == 1) return clocks_.begin()->second.deskewedBy();
+  std::string text;
+  for (const auto& [frame, clock] : clocks_) text += (text.empty() ? "'" : "; '") + frame + "': " + clock.deskewedBy();
+  return text;
+}
+
+void EchoClocks::reset() {
+  for (auto& clock : clocks_) clock.second.reset();
 }
 
 }  // namespace donex

@@ -1,6 +1,8 @@
-// What the times of a stream's echoes are: their unit, what they count from, and what the echoes are de-skewed by.
+// What the times of a sensor's echoes are: their unit, what they count from, and what the echoes are de-skewed by.
 #pragma once
 
+#include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,7 @@
 
 namespace donex {
 
+/// Of the clouds of one frame.
 class EchoClock {
  public:
   explicit EchoClock(const Config& config);
@@ -37,10 +40,8 @@ class EchoClock {
 
   /// "times in 'time'", or "nothing: " and why.
   const std::string& deskewedBy() const { return deskewed_by_; }
-  /// Whether there is nothing to de-skew by, although nobody has made a mistake that is known.
-  bool lacksTimes() const {
-    return state_ == State::kNoField || state_ == State::kNotUnderstood || state_ == State::kAlike;
-  }
+  /// Why there is nothing to de-skew by, although nobody has made a mistake that is known: once, else empty.
+  std::string untoldLack();
   /// Whether the configured field is missing.
   bool lacksToldField() const { return state_ == State::kTold; }
 
@@ -59,13 +60,30 @@ class EchoClock {
   std::string wanted_;  // time_field
   TimeUnit unit_;
   DeskewChoice choice_;
-  std::string frame_;                // of the clouds that are compared
   bool is_compared_ = false;         // the cloud that was read last
   double first_ = 0.0, last_ = 0.0;  // of its times, as they are read [s]
   std::string reading_finding_;
   int not_understood_ = 0;  // clouds in a row whose field only looks like times
   State state_ = State::kNotYet;
   std::string deskewed_by_ = "not known yet";
+  std::string told_lack_;
+};
+
+/// Sensors on one topic differ in what their times are; they are told apart by the frames of their clouds.
+class EchoClocks {
+ public:
+  explicit EchoClocks(const Config& config) : config_(config) {}
+
+  EchoClock& of(const std::string& frame);
+  /// What EchoClock::deskewedBy() says; of several sensors with their frames.
+  std::string deskewedBy() const;
+  void reset();
+
+ private:
+  static constexpr std::size_t kMostFrames = 64;  // more on one topic are no sensors
+
+  Config config_;
+  std::map<std::string, EchoClock> clocks_;
 };
 
 }  // namespace donex

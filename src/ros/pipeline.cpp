@@ -31,7 +31,7 @@ Pipeline::Pipeline(const Config& config, const tf2::BufferCore& tf, PipelineEven
       motion_(config.motion, tf),
       placer_(config, tf),
       detector_(std::move(detector)),
-      clock_(config) {}
+      clocks_(config) {}
 
 void Pipeline::addCloud(const sensor_msgs::PointCloud2ConstPtr& cloud, double now) {
   ++counts_.clouds_in;
@@ -57,17 +57,18 @@ void Pipeline::refuseCloud(const std::string& why) {
 
 /// A cloud that waits has perhaps been read in the unit before: it is read again.
 void Pipeline::observeTimes(WaitingCloud& waiting) {
-  if (!clock_.observe(*waiting.cloud, waiting.layout)) return;
+  EchoClock& clock = clockOf(waiting);
+  if (!clock.observe(*waiting.cloud, waiting.layout)) return;
   parsed_ = 0;
-  if (!clock_.unitFinding().empty() && events_.unit_found) events_.unit_found(clock_.unitFinding());
+  if (!clock.unitFinding().empty() && events_.unit_found) events_.unit_found(clock.unitFinding());
 }
 
 /// What the grid remembers was placed by times that meant something else.
-void Pipeline::followTimes(const ScanMotion& motion) {
+void Pipeline::followTimes(const ScanMotion& motion, EchoClock& clock) {
   const bool is_told = !motion.tracked && !motion.sensor_from_cloud;
-  if (!is_told || !clock_.follow(scan_.stamp, motion.odom_from_base * motion.base_from_sensor)) return;
+  if (!is_told || !clock.follow(scan_.stamp, motion.odom_from_base * motion.base_from_sensor)) return;
   parsed_ = 0;
-  if (events_.reading_found) events_.reading_found(clock_.readingFinding());
+  if (events_.reading_found) events_.reading_found(clock.readingFinding());
   if (needsWholeDrive(config_.method)) return;
   reset();
   events_.forgotten("the meaning of the echoes' times has been found: the grid is forgotten");
@@ -193,7 +194,7 @@ MotionAnswer Pipeline::motionOf(const WaitingCloud& waiting, bool settle) {
 void Pipeline::parse(const WaitingCloud& waiting) {
   if (parsed_ == waiting.number) return;
   const auto start = std::chrono::steady_clock::now();
-  clock_.read(*waiting.cloud, waiting.layout, scan_.echoes, times_);
+  clockOf(waiting).read(*waiting.cloud, waiting.layout, scan_.echoes, times_);
   no_returns_ = removeNoReturns(origin().cast<float>(), scan_.echoes);
   parsed_ = waiting.number;
   parsing_time_ = secondsSince(start);
@@ -229,8 +230,8 @@ void Pipeline::label(const WaitingCloud& waiting, const ScanMotion& motion) {
   order_.labeled(waiting.cloud->header);
   events_.labeled({waiting.cloud, waiting.layout, scan_, labels_, *detector_, motion.odom_frame, motion,
                    stamp.toSec() + times_.last, waiting.received, parsing_time_ + secondsSince(start)});
-  tellStrangeTimes();
-  followTimes(motion);
+  tellStrangeTimes(clockOf(waiting));
+  followTimes(motion, clockOf(waiting));
 }
 
 /// Of a motion that is found in the clouds: what it says of itself.
@@ -259,12 +260,11 @@ void Pipeline::followOdometry(const ScanMotion& motion) {
                     cloudOf(ros::Time(scan_.stamp)) + ": the grid is forgotten");
 }
 
-void Pipeline::tellStrangeTimes() {
+void Pipeline::tellStrangeTimes(EchoClock& clock) {
   if (!times_.problem.empty()) return events_.strange_times(times_.problem);
-  if (clock_.lacksToldField()) return events_.strange_times("de-skewed by " + clock_.deskewedBy());
-  if (!clock_.lacksTimes() || clock_.deskewedBy() == told_lack_) return;
-  told_lack_ = clock_.deskewedBy();
-  if (events_.not_deskewed) events_.not_deskewed(told_lack_);
+  if (clock.lacksToldField()) return events_.strange_times("de-skewed by " + clock.deskewedBy());
+  const std::string lack = clock.untoldLack();
+  if (!lack.empty() && events_.not_deskewed) events_.not_deskewed(lack);
 }
 
 void Pipeline::suspectOrigin(const ScanMotion& motion, const std::string& cloud_frame) {
@@ -313,7 +313,7 @@ void Pipeline::finish() {
 }
 
 void Pipeline::reset() {
-  clock_.reset();
+  clocks_.reset();
   detector_->reset();
   flood_.reset();
 }

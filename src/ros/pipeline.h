@@ -113,7 +113,7 @@ class Pipeline {
   const CloudRemarks& remarks() const { return remarks_; }
   const MotionSource& motion() const { return motion_; }
   /// "times in 'time' ...", or "nothing: " and why.
-  const std::string& deskewedBy() const { return clock_.deskewedBy(); }
+  std::string deskewedBy() const { return clocks_.deskewedBy(); }
 
  private:
   struct WaitingCloud {
@@ -125,9 +125,10 @@ class Pipeline {
   };
 
   void parse(const WaitingCloud& waiting);
+  EchoClock& clockOf(const WaitingCloud& waiting) { return clocks_.of(waiting.cloud->header.frame_id); }
   void observeTimes(WaitingCloud& waiting);
-  void followTimes(const ScanMotion& motion);
-  void tellStrangeTimes();
+  void followTimes(const ScanMotion& motion, EchoClock& clock);
+  void tellStrangeTimes(EchoClock& clock);
   void place(WaitingCloud cloud);
   void suspect(WaitingCloud cloud);
   void suspect(const nav_msgs::Odometry& odometry);
@@ -156,8 +157,7 @@ class Pipeline {
   OriginWatch origin_watch_;
   int without_ground_ = 0;  // clouds in a row
   std::shared_ptr<Detector> detector_;
-  EchoClock clock_;
-  std::string told_lack_;  // of times, as it was last told
+  EchoClocks clocks_;
   bool watched_ = false;
   PipelineCounts counts_;
   CloudOrder order_;

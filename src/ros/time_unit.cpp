@@ -55,6 +55,8 @@ void TimeUnit::bound(const Span& span, double interval, TimeField& field) const 
   const bool is_nanoseconds = field.encoding == TimeEncoding::kAuto && span.last > kSecondsOfNoClock;
   const double unit = unit_ ? unit_->seconds : is_nanoseconds ? 1e-9 : usualUnit(field.encoding);
   const double margin = std::max(options_.wild_margin * length, interval / unit - length);
+  field.first = span.first;
+  field.last = span.last;
   field.least = span.first - margin;
   field.most = span.last + margin;
 }

@@ -56,10 +56,13 @@ class ManagerTest : public ::testing::Test {
   /// Loads the classifier and waits until it is connected.
   void load() {
     ASSERT_TRUE(tryLoad());
-    labeled_ = nh_.subscribe("donex/labeled_points", 200, &ManagerTest::onLabeled, this);
-    ASSERT_TRUE(waitFor([this] {
-      return clouds_.getNumSubscribers() == 1 && odometry_.getNumSubscribers() == 1 && labeled_.getNumPublishers() == 1;
-    }));
+    connect(clouds_);
+  }
+  /// The same with a publisher's topic in the place of `points`, whose type may be another.
+  void loadOn(const ros::Publisher& publisher) {
+    const ros::M_string remappings{{nh_.resolveName("points"), publisher.getTopic()}};
+    ASSERT_TRUE(manager_.load(nodeName(), "donex/DonexNodelet", remappings, {}));
+    connect(publisher);
   }
   bool tryLoad() { return manager_.load(nodeName(), "donex/DonexNodelet", {}, {}); }
 
@@ -107,6 +110,12 @@ class ManagerTest : public ::testing::Test {
   static std::string uniqueNamespace() {
     static std::atomic<int> count{0};
     return "/test_" + std::to_string(++count);
+  }
+  void connect(const ros::Publisher& clouds) {
+    labeled_ = nh_.subscribe("donex/labeled_points", 200, &ManagerTest::onLabeled, this);
+    ASSERT_TRUE(waitFor([&] {
+      return clouds.getNumSubscribers() == 1 && odometry_.getNumSubscribers() == 1 && labeled_.getNumPublishers() == 1;
+    }));
   }
   void onLabeled(const sensor_msgs::PointCloud2ConstPtr& cloud) { received_.push_back(cloud); }
   void onDiagnostics(const diagnostic_msgs::DiagnosticArrayConstPtr& array) {

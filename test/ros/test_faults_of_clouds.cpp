@@ -24,6 +24,19 @@ class FaultsOfClouds : public FaultsTest {
   bool waitForStatus(const std::string& text) {
     return waitFor([&] { return status_.find(text) != std::string::npos; });
   }
+  /// A scan's echoes one after the other up to now; one of them much later.
+  boost::shared_ptr<sensor_msgs::PointCloud2> cloudWithAWildTime() const {
+    constexpr std::size_t kWild = 7;
+    test::CloudBuilder builder;
+    builder.frame("lidar").stamp(now_).xyz().field("time", sensor_msgs::PointField::FLOAT32);
+    builder.size(static_cast<std::uint32_t>(ring_.size()));
+    for (std::size_t i = 0; i < ring_.size(); ++i) {
+      const Eigen::Vector3d echo = ring_[i].cast<double>();
+      const double share = static_cast<double>(i) / static_cast<double>(ring_.size());
+      builder.at(i, echo.x(), echo.y(), echo.z()).set(i, "time", i == kWild ? 0.9 : kPeriod * (share - 1.0));
+    }
+    return builder.build();
+  }
   int dynamicEchoes() const {
     int count = 0;
     const auto& cloud = *received_.back();
@@ -74,6 +87,32 @@ TEST_F(FaultsOfClouds, NoReturnsAtTheSensorOfAMovedCloud) {
   drive(echoes, 1, "base_link");
   EXPECT_EQ(dynamicEchoes(), 0);
   conclude("beams without an echo at 0, 0, 0, moved into the vehicle's frame with the cloud", "none is dynamic");
+}
+
+TEST_F(FaultsOfClouds, NoTimesOfEchoes) {
+  load();
+  drive(ring_, 5);
+  ASSERT_TRUE(waitFor([this] {
+    return diagnostic("de-skewed by").rfind("nothing: the clouds carry no times", 0) == 0;
+  })) << diagnostic("de-skewed by");
+  conclude("clouds without times of echoes; `de-skewed by` says `nothing: the clouds carry no times of echoes`",
+           "every scan labelled");
+}
+
+TEST_F(FaultsOfClouds, OneWildTimeInEachCloud) {
+  load();
+  sendOdometry(now_ - kPeriod);  // before the first echo of the first cloud
+  sendOdometry(now_);
+  for (int scan = 0; scan < 10; ++scan) {
+    advance();
+    sendOdometry(now_);
+    ++clouds_sent_;
+    clouds_.publish(cloudWithAWildTime());
+    ASSERT_TRUE(waitForLabeled(received_.size() + 1)) << status_;
+  }
+  ASSERT_TRUE(waitFor([this] { return diagnostic("echo times outside of the scan").rfind("1, taken", 0) == 0; }));
+  conclude("one echo of every cloud has a time 0.9 s ahead; `echo times outside of the scan` counts it",
+           "every scan labelled");
 }
 
 TEST_F(FaultsOfClouds, TwoSourcesOfOdometry) {

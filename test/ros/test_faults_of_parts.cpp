@@ -5,6 +5,7 @@ namespace donex {
 namespace {
 
 using test::FaultsTest;
+using test::waitFor;
 
 class FaultsOfParts : public FaultsTest {
  protected:
@@ -103,6 +104,26 @@ TEST_F(FaultsOfParts, StampsOfTwoClocks) {
     sendFrom("front", now_ - 2.0);
   }
   conclude("two sensors, the stamps of one 2 s behind the other's", "the other's clouds labelled, how far it is said");
+}
+
+/// The clouds of the one that is left are behind all that was labelled before.
+TEST_F(FaultsOfParts, TheSensorOfTheNewerClockVanishes) {
+  mountAnother();
+  load();
+  for (std::size_t scan = 1; scan <= 30; ++scan) {
+    advance();
+    sendOdometry(now_);
+    sendFrom("lidar", now_);
+    expectLabeled(scan);
+    sendFrom("front", now_ - 2.0);
+  }
+  for (int scan = 0; scan < 90; ++scan) {
+    advance();
+    sendOdometry(now_);
+    sendFrom("front", now_ - 2.0);
+  }
+  ASSERT_TRUE(waitFor([this] { return received_.back()->header.frame_id == "front"; })) << status_;
+  conclude("two sensors, the stamps of one 2 s behind; the other vanishes", "labels of the one that is left after 7 s");
 }
 
 TEST_F(FaultsOfParts, StampsOfAClockAhead) {

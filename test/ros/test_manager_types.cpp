@@ -7,20 +7,12 @@
 namespace donex {
 namespace {
 
-using test::waitFor;
-
 /// A publisher that no test has tied to PointCloud2.
 class ManagerTypes : public test::ManagerTest {
  protected:
-  void load(ros::Publisher publisher) {
+  void load(const ros::Publisher& publisher) {
     others_ = publisher;
-    const ros::M_string remappings{{nh_.resolveName("points"), others_.getTopic()}};
-    ASSERT_TRUE(manager_.load(nodeName(), "donex/DonexNodelet", remappings, {}));
-    labeled_ = nh_.subscribe<sensor_msgs::PointCloud2>("donex/labeled_points", 200,
-                                                       [this](const auto& cloud) { received_.push_back(cloud); });
-    ASSERT_TRUE(waitFor([this] {
-      return others_.getNumSubscribers() == 1 && odometry_.getNumSubscribers() == 1 && labeled_.getNumPublishers() == 1;
-    }));
+    loadOn(others_);
   }
   static topic_tools::ShapeShifter livoxMessage(double stamp) {
     return test::messageOf(test::livoxBytes(test::livoxPoints(test::ring()), stamp), "livox_ros_driver2/CustomMsg");

@@ -134,6 +134,46 @@ TEST(TimesOfUse, AreSaidAsWhatTheCloudsAreDeskewedBy) {
   }
 }
 
+/// How far the echoes of the last of `labeled` from each frame are from where they were at its stamp [m].
+double worstOf(const std::vector<test::Labeled>& labeled, const std::string& frame) {
+  double worst = std::numeric_limits<double>::infinity();
+  for (const test::Labeled& scan : labeled) {
+    if (scan.published->header.frame_id != frame) continue;
+    worst = 0.0;
+    for (const auto& echo : scan.echoes) worst = std::max(worst, std::abs(static_cast<double>(echo.x()) - 20.0));
+  }
+  return worst;
+}
+
+/// Each sensor's field has a unit of its own; the second's clouds come half a turn after the first's.
+TEST(TimesOfTwoSensors, DoNotConfuseEachOther) {
+  const struct {
+    Written front, rear;
+  } kCases[]{{{"t", PointField::UINT32, 1e5}, {"t", PointField::UINT32, 1e8}},
+             {{"time", PointField::FLOAT32, 1e2}, {"time", PointField::FLOAT32, 0.1}},
+             {{"t", PointField::UINT32, 1e5}, {"timestamp", PointField::FLOAT64, 0.0, 1.0}}};
+  for (const auto& sensors : kCases) {
+    PipelineRig rig;
+    for (const char* frame : {"front", "rear"}) {
+      rig.tf.setTransform(test::transformAt(0.0, "base_link", frame, 0.0, 1.7), "test", true);
+    }
+    for (int i = -10; i < 80; ++i) rig.odometry(100.0 + 0.01 * i, kSpeed);
+    for (int i = 0; i < 10; ++i) {
+      const double stamp = 100.0 + 0.5 * kPeriod * i;
+      const auto cloud = turn(i % 2 == 0 ? sensors.front : sensors.rear, stamp);
+      cloud->header.frame_id = i % 2 == 0 ? "front" : "rear";
+      rig.pipeline.addCloud(cloud, stamp);
+      rig.run(stamp);
+    }
+    rig.pipeline.finish();
+    EXPECT_EQ(rig.labeled.size(), 10U) << (rig.drops.empty() ? "" : rig.drops[0]);
+    for (const char* frame : {"front", "rear"}) EXPECT_LT(worstOf(rig.labeled, frame), 1e-3) << "[m], " << frame;
+    for (const char* part : {"'front': times in 't", "; 'rear': times in 't"}) {
+      EXPECT_NE(rig.pipeline.deskewedBy().find(part), std::string::npos) << rig.pipeline.deskewedBy();
+    }
+  }
+}
+
 TEST(TimeUnit, TheConfigurationOverrules) {
   Config config = test::smallConfig();
   config.cloud.time_field = "t";
