@@ -186,8 +186,7 @@ void expectAsGoodAsAloneInAStreet(const Sensors& sensors) {
 Eigen::Isometry3d mountedAt(double x, double z) { return Eigen::Isometry3d(Eigen::Translation3d(x, 0.0, z)); }
 
 TEST(TwoSensors, FrontAndRearHalf) {
-  expectAsGoodAsAloneInAStreet(
-      {{"front", mountedAt(1.1, 1.73), isAhead}, {"rear", mountedAt(1.1, 1.73), isBehind}});
+  expectAsGoodAsAloneInAStreet({{"front", mountedAt(1.1, 1.73), isAhead}, {"rear", mountedAt(1.1, 1.73), isBehind}});
 }
 
 TEST(TwoSensors, RoofAndBumper) {
