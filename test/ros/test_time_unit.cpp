@@ -99,6 +99,8 @@ TEST_P(WildTime, NeitherDelaysNorDropsACloud) {
   EXPECT_TRUE(drive.rig.strange_times.empty()) << drive.rig.strange_times[0];
   ASSERT_EQ(drive.rig.labeled.size(), 6U);
   EXPECT_LT(drive.worst(), 1e-3) << "[m]; without de-skewing it is " << kSpeed * kPeriod;
+  const test::Labeled& last = drive.rig.labeled.back();
+  EXPECT_LE(last.last_echo, last.stamp + kPeriod) << "nothing waits for odometry after the scan";
   const auto& remarks = drive.rig.remarks;
   EXPECT_EQ(std::count(remarks.begin(), remarks.end(), "1, taken for the scan's nearest end"), 1);
 }
