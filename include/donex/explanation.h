@@ -19,13 +19,14 @@ enum class EchoReason : std::uint8_t {
   kNewAlone,    ///< static: the place was free before, but what stands there is no moving object
   kMoving,      ///< dynamic
   kOwnBody,     ///< static: the vehicle itself
+  kLoose,       ///< static: alone in its direction while the air is full of such echoes
 };
-constexpr std::size_t kEchoReasons = 8;
+constexpr std::size_t kEchoReasons = 9;
 
 inline const char* describe(EchoReason reason) {
-  constexpr std::array<const char*, kEchoReasons> kWords{"no echo",         "outside the grid",    "ground",
-                                                         "never seen free", "occupied for longer", "new, but no object",
-                                                         "moving",          "own body"};
+  constexpr std::array<const char*, kEchoReasons> kWords{
+      "no echo", "outside the grid", "ground", "never seen free", "occupied for longer", "new, but no object",
+      "moving",  "own body",         "loose"};
   return kWords[static_cast<std::size_t>(reason)];
 }
 

@@ -47,6 +47,7 @@ std::uint32_t colourOf(EchoReason reason, float height) {
     case EchoReason::kOutside:
     case EchoReason::kNoEcho: return packed(40, 40, 40);
     case EchoReason::kOwnBody:
+    case EchoReason::kLoose:
     case EchoReason::kGround:
     case EchoReason::kSettled: break;
   }

@@ -24,6 +24,7 @@ enum class ClusterRole : std::uint8_t {
   kNone,      ///< in none: on the ground, too high, outside the grid, no solid echo
   kConnects,  ///< connects what it touches
   kFollows,   ///< near the ground: belongs to what stands right above it, connects nothing
+  kLoose,     ///< in none: alone in its direction while the air is full of such echoes
 };
 
 /// One entry per echo. Points are the echoes in the grid's window, z up [m].

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "core/evidence/ground.h"
+#include "core/evidence/loose_echoes.h"
 #include "core/evidence/newness.h"
 #include "core/evidence/own_body.h"
 #include "core/grid/storage.h"
@@ -56,6 +57,7 @@ class EvidenceDetector : public Detector {
     if (part != TurnPart::kContinuing) clock_.begin(scan.stamp);
     heightsAboveGround(part);
     own_body_.learn(part, scan, judged_.is_echo, judged_.heights, clearance());
+    loose_echoes_.loosen(part, scan.stamp, sights_.newest(), judged_.roles);
     const SightView before = sights_.seenBefore(judged_.odom_from_points);
     judgePlaces(before);
     sights_.add(scan, judged_.is_solid);
@@ -77,6 +79,7 @@ class EvidenceDetector : public Detector {
     clock_.reset();
     sights_.reset();
     own_body_.reset();
+    loose_echoes_.reset();
     tracker_.reset();
     proofs_.clear();
   }
@@ -107,7 +110,8 @@ class EvidenceDetector : public Detector {
     const std::size_t decided =
         segments_.memoryBytes() + predictions_.capacity() * sizeof(Prediction) + verdicts_.capacity() * sizeof(Verdict);
     return in_grid + judged + decided + places_.memoryBytes() + sights_.memoryBytes() + own_body_.memoryBytes() +
-           ground_.memoryBytes() + segmenter_.memoryBytes() + trimmer_.memoryBytes() + tracker_.memoryBytes();
+           loose_echoes_.memoryBytes() + ground_.memoryBytes() + segmenter_.memoryBytes() + trimmer_.memoryBytes() +
+           tracker_.memoryBytes();
   }
 
  private:
@@ -213,6 +217,7 @@ class EvidenceDetector : public Detector {
   ScanClock clock_;
   SightHistory sights_;
   OwnBody own_body_;
+  LooseEchoes loose_echoes_;
   Ground ground_;
   Segmenter segmenter_;
   ObjectTracker tracker_;
@@ -247,7 +252,7 @@ double evidenceBytes(const Config& config, double echoes) {
   double bytes = roomFor((kInGrid + kJudged) * echoes) + kDecided * echoes;
   bytes += config.method == Method::kDonex2d ? Newness2d::bytesFor(extent) : Newness3d::bytesFor(extent);
   bytes += SightHistory::bytesFor(config.evidence.history_length, EvidenceDetectorOptions().history_spacing, echoes);
-  bytes += OwnBody::bytesFor(config.self);
+  bytes += OwnBody::bytesFor(config.self) + LooseEchoes::bytesFor(echoes);
   bytes += Ground::bytesFor(reach, echoes);
   bytes += Segmenter::bytesFor(reach, config.objects, echoes) + Trimmer::bytesFor(reach, config.objects, echoes);
   return bytes + kObjects * echoes;

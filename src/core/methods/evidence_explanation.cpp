@@ -9,6 +9,7 @@ EchoReason reasonOf(const JudgedScan& scan, std::size_t i, bool inside) {
   if (scan.is_echo[i] == 0) return EchoReason::kNoEcho;
   if (!inside) return EchoReason::kOutside;
   if (scan.is_solid[i] == 0) return EchoReason::kOwnBody;
+  if (scan.roles[i] == ClusterRole::kLoose) return EchoReason::kLoose;
   if (scan.roles[i] != ClusterRole::kConnects) return EchoReason::kGround;
   switch (scan.places[i]) {
     case Place::kNew:

@@ -42,7 +42,8 @@ void Clusters::fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vect
   low_echoes_.clear();
   of_.assign(echoes.size(), kNone);
   for (std::size_t i = 0; i < echoes.size(); ++i) {
-    const bool in_height = roles[i] != ClusterRole::kNone && heights[i] >= 0.0F && heights[i] <= highest;
+    const bool takes_part = roles[i] == ClusterRole::kConnects || roles[i] == ClusterRole::kFollows;
+    const bool in_height = takes_part && heights[i] >= 0.0F && heights[i] <= highest;
     if (!in_height) continue;
     const int x = floorToInt((echoes[i].x() - sensor.x()) * per_cell) + width_ / 2;
     const int y = floorToInt((echoes[i].y() - sensor.y()) * per_cell) + width_ / 2;
