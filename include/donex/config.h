@@ -103,6 +103,7 @@ struct MotionConfig {
   bool deskew = true;
   bool publish_tf = false;
   bool odometry_check = true;
+  bool odometry_refine = true;
 };
 
 /// What the clouds of a driver do not say themselves.

@@ -155,6 +155,11 @@ void visitMotion(MotionConfig& m, Visitor& visit) {
                       "where they disagree and why; a jump forgets the grid",
                       false},
         m.odometry_check);
+  visit(ParameterInfo{"odometry_refine", "",
+                      "where odometry or tf never leave a plane, as those of wheels: take height, roll and pitch from "
+                      "the clouds",
+                      false},
+        m.odometry_refine);
 }
 
 template <class Visitor>

@@ -92,6 +92,7 @@ PipelineEvents Labeler::events() {
   events.reading_found = as("meaning of the echo times");
   events.not_deskewed = as("clouds de-skewed by");
   events.remarked = [this](CloudRemark kind, const std::string& text) { remark(describe(kind), text); };
+  events.odometry_completed = as("ego motion");
   events.strange_times = as("clouds not de-skewed");
   return events;
 }

@@ -22,8 +22,9 @@ double durationOf(const SequenceReader& sequence, std::size_t index) {
 DriveRun::DriveRun(const Config& config, DriveOdometry odometry) {
   if (odometry == DriveOdometry::kLidar) {
     odometry_.emplace();
-  } else if (config.motion.odometry_check) {
-    check_.emplace();
+  } else {
+    if (config.motion.odometry_check) check_.emplace();
+    if (config.motion.odometry_refine) completion_.emplace();
   }
   if (needsWholeDrive(config.method)) {
     whole_ = makeWholeDriveDetector(config);
@@ -82,8 +83,12 @@ void DriveRun::followPoses(const Scan& scan) {
 /// A drive that is shown again has its poses from the first time.
 void DriveRun::complete(Scan& scan, std::size_t index) {
   if (index == completed_poses_.size()) {
+    const double start = cpuTime();
     completed_poses_.push_back(completion_->complete(scan.echoes, scan.base_from_sensor, scan.odom_from_base));
-    completed_ += completion_->isActive() ? 1U : 0U;
+    if (completion_->isActive()) {
+      ++completed_;
+      odometry_times_.push_back(cpuTime() - start);
+    }
   }
   scan.odom_from_base = completed_poses_[index];
 }

@@ -30,9 +30,6 @@ class DriveRun {
   /// Shows the method each scan in so many parts (ScanParts); labels and times are those of whole scans again.
   void cutScansInto(std::size_t parts) { parts_ = ScanParts(parts); }
 
-  /// Poses given that never leave their plane get height, roll and pitch from the scans (PlanarCompletion).
-  void completePlanarPoses() { completion_.emplace(); }
-
   /// Takes the labels of a scan; `index` is the sequence's.
   using Sink = std::function<void(std::size_t index, const Scan& scan, const EchoLabels& labels)>;
 
@@ -45,8 +42,9 @@ class DriveRun {
   const std::vector<double>& times() const { return times_; }
   const std::vector<double>& cpuTimes() const { return cpu_times_; }
 
-  /// With DriveOdometry::kLidar where each scan was found, and the CPU time that took [s]; else empty.
+  /// With DriveOdometry::kLidar where each scan was found; else empty.
   const std::vector<TrackedScan>& tracked() const { return tracked_; }
+  /// CPU time [s] of finding a scan, or height, roll and pitch of those whose poses never leave their plane.
   const std::vector<double>& odometryTimes() const { return odometry_times_; }
 
   /// Of the poses given against the scans; null without them.

@@ -181,6 +181,7 @@ void Diagnostics::addCounts(DiagnosticStatusWrapper& status) const {
     status.add(std::string("odometry refused: ") + describe(refusal), counts.refused.of(refusal));
   }
   status.add("odometry jumps", counts.jumps);
+  status.add("clouds labelled, height, roll and pitch from the clouds", counts.completed);
   status.add("alarms: what stands became dynamic at once", counts.floods);
   if (!last_flood_.empty()) status.add("last such alarm", last_flood_);
   for (std::size_t i = 0; i < kCloudRemarks; ++i) {

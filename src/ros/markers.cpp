@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include <boost/make_shared.hpp>
+#include <tf2_eigen/tf2_eigen.h>
 
 namespace donex {
 namespace {
@@ -24,24 +25,7 @@ std_msgs::ColorRGBA colour(float r, float g, float b, float a) {
   return colour;
 }
 
-geometry_msgs::Point pointOf(const Eigen::Vector3d& position) {
-  geometry_msgs::Point point;
-  point.x = position.x();
-  point.y = position.y();
-  point.z = position.z();
-  return point;
-}
-
-geometry_msgs::Pose poseOf(const Eigen::Isometry3d& transform) {
-  geometry_msgs::Pose pose;
-  pose.position = pointOf(transform.translation());
-  const Eigen::Quaterniond rotation(transform.linear());
-  pose.orientation.x = rotation.x();
-  pose.orientation.y = rotation.y();
-  pose.orientation.z = rotation.z();
-  pose.orientation.w = rotation.w();
-  return pose;
-}
+geometry_msgs::Point pointOf(const Eigen::Vector3d& position) { return tf2::toMsg(position); }
 
 Marker markerOf(const std_msgs::Header& header, const char* name_space, std::int32_t id, std::int32_t type) {
   Marker marker;
@@ -67,7 +51,7 @@ void addCells(const Detector& detector, double voxel_size, const std_msgs::Heade
 
 void addBox(const Object& object, const std_msgs::Header& header, MarkerArray& array) {
   Marker box = markerOf(header, "objects", static_cast<std::int32_t>(object.id), Marker::CUBE);
-  box.pose = poseOf(object.odom_from_box);
+  box.pose = tf2::toMsg(object.odom_from_box);
   // rviz refuses a scale of zero, which a flat object has.
   const Eigen::Vector3d size = object.size.cwiseMax(0.01);
   box.scale.x = size.x();
@@ -115,7 +99,7 @@ void addObjects(const Detector& detector, const std_msgs::Header& header, Marker
 /// The twelve edges of the grid, as pairs of corners: those that differ in one coordinate.
 void addOutline(const GridOutline& outline, const std_msgs::Header& header, MarkerArray& array) {
   Marker marker = markerOf(header, "grid", 0, Marker::LINE_LIST);
-  marker.pose = poseOf(outline.odom_from_grid);
+  marker.pose = tf2::toMsg(outline.odom_from_grid);
   marker.scale.x = 0.05;
   marker.color = colour(0.3F, 0.6F, 1.0F, 0.6F);
   const auto corner = [&](unsigned bits) {
@@ -137,7 +121,8 @@ void addOutline(const GridOutline& outline, const std_msgs::Header& header, Mark
 }  // namespace
 
 visualization_msgs::MarkerArrayPtr MarkerMaker::make(const Detector& detector, const Config& config,
-                                                     const ros::Time& stamp, const std::string& odom_frame) {
+                                                     const ros::Time& stamp, const std::string& odom_frame,
+                                                     const Eigen::Isometry3d& odom_from_world) {
   header_.stamp = stamp;
   header_.frame_id = odom_frame;
   auto array = boost::make_shared<MarkerArray>();
@@ -145,6 +130,11 @@ visualization_msgs::MarkerArrayPtr MarkerMaker::make(const Detector& detector, c
   if (wanted.markers && wanted.marker_cells) addCells(detector, config.voxel_size, header_, *array);
   if (wanted.markers && wanted.marker_objects) addObjects(detector, header_, *array);
   if (wanted.markers && wanted.marker_grid) addOutline(detector.outline(), header_, *array);
+  for (Marker& marker : array->markers) {
+    Eigen::Isometry3d world_from_marker;
+    tf2::fromMsg(marker.pose, world_from_marker);
+    marker.pose = tf2::toMsg(Eigen::Isometry3d(odom_from_world * world_from_marker));
+  }
   deleteGone(*array);
   return array;
 }

@@ -18,7 +18,7 @@ class MarkerMaker {
  public:
   /// The markers of the detector's last scan that are switched on, in the odometry frame.
   visualization_msgs::MarkerArrayPtr make(const Detector& detector, const Config& config, const ros::Time& stamp,
-                                          const std::string& odom_frame);
+                                          const std::string& odom_frame, const Eigen::Isometry3d& odom_from_world);
 
   /// Deletes all that is shown.
   visualization_msgs::MarkerArrayPtr clear();

@@ -12,13 +12,13 @@ geometry_msgs::Vector3 vectorOf(const Eigen::Vector3d& vector) {
   return message;
 }
 
-MovingObject messageOf(const Object& object) {
+MovingObject messageOf(const Object& object, const Eigen::Isometry3d& odom_from_world) {
   MovingObject message;
   message.id = object.id;
   message.dynamic = object.dynamic;
-  message.pose = tf2::toMsg(object.odom_from_box);
+  message.pose = tf2::toMsg(Eigen::Isometry3d(odom_from_world * object.odom_from_box));
   message.size = vectorOf(object.size);
-  message.velocity = vectorOf(object.velocity);
+  message.velocity = vectorOf(odom_from_world.linear() * object.velocity);
   message.age.fromSec(object.age);
   message.echoes = object.echoes;
   message.proof = nameOf(object.proof);
@@ -27,11 +27,14 @@ MovingObject messageOf(const Object& object) {
 
 }  // namespace
 
-MovingObjectsPtr toMessage(const Detector& detector, const ros::Time& stamp, const std::string& odom_frame) {
+MovingObjectsPtr toMessage(const Detector& detector, const ros::Time& stamp, const std::string& odom_frame,
+                           const Eigen::Isometry3d& odom_from_world) {
   auto message = boost::make_shared<MovingObjects>();
   message->header.stamp = stamp;
   message->header.frame_id = odom_frame;
-  for (const Object& object : detector.objects()) message->objects.push_back(messageOf(object));
+  for (const Object& object : detector.objects()) {
+    message->objects.push_back(messageOf(object, odom_from_world));
+  }
   return message;
 }
 

@@ -11,6 +11,7 @@ namespace donex {
 
 /// The objects of the detector's last scan, taken at `stamp`, in the odometry frame. Also made, empty,
 /// where nothing moves.
-MovingObjectsPtr toMessage(const Detector& detector, const ros::Time& stamp, const std::string& odom_frame);
+MovingObjectsPtr toMessage(const Detector& detector, const ros::Time& stamp, const std::string& odom_frame,
+                           const Eigen::Isometry3d& odom_from_world);
 
 }  // namespace donex

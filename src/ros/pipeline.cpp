@@ -30,6 +30,7 @@ Pipeline::Pipeline(const Config& config, const tf2::BufferCore& tf, PipelineEven
       events_(std::move(events)),
       motion_(config.motion, tf),
       placer_(config, tf),
+      given_(config),
       detector_(std::move(detector)),
       clocks_(config) {}
 
@@ -220,6 +221,7 @@ void Pipeline::label(const WaitingCloud& waiting, const ScanMotion& motion) {
   moveToOrigin();
   followTrack(motion);
   followOdometry(motion);
+  completeOdometry(motion);
   // Behind another sensor's: where it was seen is its own time's, when it is learnt of is not.
   scan_.stamp = std::max(scan_.stamp, order_.newestLabeled().value_or(stamp).toSec());
   detector_->process(scan_, labels_);
@@ -228,8 +230,9 @@ void Pipeline::label(const WaitingCloud& waiting, const ScanMotion& motion) {
   remark();
   motion_.learn(labels_.dynamic);
   order_.labeled(waiting.cloud->header);
-  events_.labeled({waiting.cloud, waiting.layout, scan_, labels_, *detector_, motion.odom_frame, motion,
-                   stamp.toSec() + times_.last, waiting.received, parsing_time_ + secondsSince(start)});
+  events_.labeled({waiting.cloud, waiting.layout, scan_, labels_, *detector_, motion.odom_frame, given_.odomFromWorld(),
+                   motion, stamp.toSec() + times_.last, waiting.received, parsing_time_ + secondsSince(start)});
+  given_.learn(labels_.dynamic);
   tellStrangeTimes(clockOf(waiting));
   followTimes(motion, clockOf(waiting));
 }
@@ -246,18 +249,22 @@ void Pipeline::followTrack(const ScanMotion& motion) {
 
 /// What the grid remembers lies elsewhere after a jump: all of it would look new.
 void Pipeline::followOdometry(const ScanMotion& motion) {
-  const bool is_told = config_.motion.odometry_check && !motion.tracked && motion_.source() != OdometrySource::kNone;
-  const bool may_forget = !needsWholeDrive(config_.method);  // what has been seen of a whole drive is its answer
   const bool is_next = !order_.newestLabeled() || scan_.stamp > order_.newestLabeled()->toSec();
-  if (!is_told || !may_forget || !is_next) return;
-  if (motion.track_number != track_number_) jump_.reset();
-  track_number_ = motion.track_number;
-  const double jump = jump_.follow(scan_.stamp, scan_.odom_from_base);
+  if (!is_next) return;
+  const double jump = given_.jumpBefore(scan_, motion, motion_.source());
   if (!(jump > 0.0)) return;
   ++counts_.jumps;
   reset();
   events_.forgotten("the odometry jumped by " + std::to_string(jump).substr(0, 4) + " m before the " +
                     cloudOf(ros::Time(scan_.stamp)) + ": the grid is forgotten");
+}
+
+/// Planar odometry has the vehicle drive on a plane while the ground it sees tilts.
+void Pipeline::completeOdometry(const ScanMotion& motion) {
+  if (!given_.complete(scan_, motion, motion_.source())) return;
+  const bool is_news = counts_.completed++ == 0 && events_.odometry_completed;
+  if (!is_news) return;
+  events_.odometry_completed("the odometry never leaves its plane: height, roll and pitch are found in the clouds");
 }
 
 void Pipeline::tellStrangeTimes(EchoClock& clock) {
@@ -314,6 +321,7 @@ void Pipeline::finish() {
 
 void Pipeline::reset() {
   clocks_.reset();
+  given_.reset();
   detector_->reset();
   flood_.reset();
 }

@@ -13,7 +13,6 @@
 #include <sensor_msgs/PointCloud2.h>
 #include <tf2/buffer_core.h>
 
-#include "core/motion/odometry_jump.h"
 #include "donex/detector.h"
 #include "ros/cloud_order.h"
 #include "ros/cloud_placer.h"
@@ -22,6 +21,7 @@
 #include "ros/drop_reason.h"
 #include "ros/echo_clock.h"
 #include "ros/flood_watch.h"
+#include "ros/given_odometry.h"
 #include "ros/motion_source.h"
 
 namespace donex {
@@ -34,6 +34,8 @@ struct LabeledScan {
   const EchoLabels& labels;
   const Detector& detector;
   const std::string& odom_frame;
+  /// From the world as the scan and the detector tell it: the identity, unless the odometry was completed.
+  const Eigen::Isometry3d& odom_from_world;
   const ScanMotion& motion;
   double last_echo;  ///< when it was measured: its own time, where it has any, else the stamp [s]
   std::chrono::steady_clock::time_point received;
@@ -59,6 +61,8 @@ struct PipelineEvents {
   std::function<void(const std::string& text)> unit_found = nullptr;
   /// The same of what these times count from, told by the scans; may be left empty.
   std::function<void(const std::string& text)> reading_found = nullptr;
+  /// The odometry never leaves its plane, and height, roll and pitch come from the scans; may be left empty.
+  std::function<void(const std::string& text)> odometry_completed = nullptr;
   /// There is nothing to de-skew the clouds by, and why; when that changes; may be left empty.
   std::function<void(const std::string& text)> not_deskewed = nullptr;
 };
@@ -70,6 +74,7 @@ struct PipelineCounts {
   OdometryRefusalCounts refused;
   std::size_t floods = 0;      ///< alarms: what stands became dynamic at once
   std::size_t jumps = 0;       ///< of the odometry; each forgets the grid
+  std::size_t completed = 0;   ///< labelled with height, roll and pitch from the scans
   std::size_t degenerate = 0;  ///< labelled with an ego motion from the clouds that they leave open in part
 };
 
@@ -138,6 +143,7 @@ class Pipeline {
   void suspectOrigin(const ScanMotion& motion, const std::string& cloud_frame);
   void followTrack(const ScanMotion& motion);
   void followOdometry(const ScanMotion& motion);
+  void completeOdometry(const ScanMotion& motion);
   void startAnew(const std::string& why);
   MotionAnswer motionOf(const WaitingCloud& waiting, bool settle);
   void label(const WaitingCloud& waiting, const ScanMotion& motion);
@@ -151,9 +157,8 @@ class Pipeline {
   PipelineEvents events_;
   MotionSource motion_;
   CloudPlacer placer_;
-  OdometryJump jump_;
+  GivenOdometry given_;
   FloodWatch flood_;
-  std::size_t track_number_ = 0;
   OriginWatch origin_watch_;
   int without_ground_ = 0;  // clouds in a row
   std::shared_ptr<Detector> detector_;

@@ -35,9 +35,9 @@ void ScanPublisher::publishTheRest(const LabeledScan& scan, const Config& config
   if (isHeard(dynamic_)) dynamic_.publish(selectPart(*scan.cloud, scan.layout, scan.labels, CloudPart::kDynamic));
   if (isHeard(static_)) static_.publish(selectPart(*scan.cloud, scan.layout, scan.labels, CloudPart::kStatic));
   const ros::Time& stamp = scan.cloud->header.stamp;
-  if (isHeard(objects_)) objects_.publish(toMessage(scan.detector, stamp, scan.odom_frame));
+  if (isHeard(objects_)) objects_.publish(toMessage(scan.detector, stamp, scan.odom_frame, scan.odom_from_world));
   if (isHeard(markers_)) {
-    const auto array = maker_.make(scan.detector, config, stamp, scan.odom_frame);
+    const auto array = maker_.make(scan.detector, config, stamp, scan.odom_frame, scan.odom_from_world);
     if (!array->markers.empty()) markers_.publish(array);
   }
   if (isHeard(explained_)) explained_.publish(explainScan(scan));
@@ -53,7 +53,8 @@ bool ScanPublisher::somebodyWatchesCells() const { return isHeard(shadowed_) || 
 void ScanPublisher::publishCells(const LabeledScan& scan) const {
   std_msgs::Header header = scan.cloud->header;
   header.frame_id = scan.odom_frame;
-  const MemoryCells cells = scan.detector.memoryCells();
+  MemoryCells cells = scan.detector.memoryCells();
+  for (auto* centers : {&cells.shadowed, &cells.seen_through}) moveEchoes(scan.odom_from_world, *centers);
   shadowed_.publish(cellCloud(cells.shadowed, header));
   seen_through_.publish(cellCloud(cells.seen_through, header));
 }

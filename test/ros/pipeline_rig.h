@@ -61,7 +61,7 @@ inline Config smallConfig(OdometrySource source = OdometrySource::kPose) {
 
 struct Labeled {
   double stamp, last_echo;
-  Eigen::Isometry3d odom_from_base, base_from_sensor;
+  Eigen::Isometry3d odom_from_base, base_from_sensor, odom_from_world;
   std::vector<Eigen::Vector3f> echoes;
   EchoLabels labels;
   sensor_msgs::PointCloud2ConstPtr published;
@@ -92,7 +92,7 @@ class PipelineRig {
 
   tf2::BufferCore tf;
   std::vector<Labeled> labeled;
-  std::vector<std::string> drops, refusals, forgotten, strange_times, not_deskewed, remarks;
+  std::vector<std::string> drops, refusals, forgotten, strange_times, not_deskewed, remarks, completed;
   Pipeline pipeline;
 
  private:
@@ -100,7 +100,7 @@ class PipelineRig {
     PipelineEvents events;
     events.labeled = [this](const LabeledScan& scan) {
       labeled.push_back({scan.cloud->header.stamp.toSec(), scan.last_echo, scan.scan.odom_from_base,
-                         scan.scan.base_from_sensor, scan.scan.echoes, scan.labels,
+                         scan.scan.base_from_sensor, scan.odom_from_world, scan.scan.echoes, scan.labels,
                          labelCloud(*scan.cloud, scan.layout, scan.labels)});
     };
     events.dropped = [this](DropReason, const std::string& text) { drops.push_back(text); };
@@ -108,6 +108,7 @@ class PipelineRig {
     events.forgotten = [this](const std::string& text) { forgotten.push_back(text); };
     events.strange_times = [this](const std::string& text) { strange_times.push_back(text); };
     events.not_deskewed = [this](const std::string& text) { not_deskewed.push_back(text); };
+    events.odometry_completed = [this](const std::string& text) { completed.push_back(text); };
     events.remarked = [this](CloudRemark, const std::string& text) { remarks.push_back(text); };
     return events;
   }

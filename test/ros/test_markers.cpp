@@ -4,6 +4,7 @@
 #include <set>
 
 #include <gtest/gtest.h>
+#include <tf2_eigen/tf2_eigen.h>
 
 #include "ros/markers.h"
 
@@ -75,10 +76,11 @@ class Markers : public testing::Test {
     detector_.objects_ = {objectOf(4, 3.0), objectOf(7, 0.0)};
     detector_.cells_ = {{1.0F, 2.0F, 3.0F}, {4.0F, 5.0F, 6.0F}};
   }
-  void show() { screen_.take(*maker_.make(detector_, config_, ros::Time(100.0), "odom")); }
+  void show() { screen_.take(*maker_.make(detector_, config_, ros::Time(100.0), "odom", odom_from_world_)); }
 
   FakeDetector detector_;
   Config config_;
+  Eigen::Isometry3d odom_from_world_ = Eigen::Isometry3d::Identity();
   MarkerMaker maker_;
   Screen screen_;
 };
@@ -92,6 +94,20 @@ TEST_F(Markers, ShowEverything) {
   EXPECT_EQ(cells.scale.x, config_.voxel_size);
   EXPECT_EQ(screen_.shown.count({"objects", 7}), 1U);
   EXPECT_EQ(screen_.shown.count({"velocities", 7}), 0U) << "an arrow without a direction";
+}
+
+TEST_F(Markers, LieWhereTheOdometryHasTheVehicle) {
+  odom_from_world_ = Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitY());
+  odom_from_world_.pretranslate(Eigen::Vector3d(0.0, 0.0, 2.0));
+  show();
+  const auto placed = [&](const char* name_space, int id) {
+    Eigen::Isometry3d odom_from_marker;
+    tf2::fromMsg(screen_.shown.at({name_space, id}).pose, odom_from_marker);
+    return odom_from_marker;
+  };
+  EXPECT_TRUE(placed("objects", 4).isApprox(odom_from_world_ * detector_.objects_[0].odom_from_box, 1e-12));
+  for (const char* list : {"dynamic_cells", "grid"}) EXPECT_TRUE(placed(list, 0).isApprox(odom_from_world_, 1e-12));
+  EXPECT_TRUE(placed("velocities", 4).isApprox(odom_from_world_, 1e-12)) << "from point to point";
 }
 
 TEST_F(Markers, SpeedsAreWrittenAboveTheBoxes) {

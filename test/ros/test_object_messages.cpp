@@ -30,7 +30,7 @@ TEST(ObjectMessages, SayWhatTheDetectorKnows) {
   car.age = 2.5;
   car.echoes = 321;
   car.proof = Proof::kRearReceded;
-  const MovingObjectsPtr message = toMessage(detector, ros::Time(100.5), "odom");
+  const MovingObjectsPtr message = toMessage(detector, ros::Time(100.5), "odom", Eigen::Isometry3d::Identity());
   EXPECT_EQ(message->header.frame_id, "odom");
   EXPECT_EQ(message->header.stamp, ros::Time(100.5));
   ASSERT_EQ(message->objects.size(), 2U);
@@ -49,10 +49,24 @@ TEST(ObjectMessages, SayWhatTheDetectorKnows) {
   EXPECT_EQ(message->objects[0].proof, "none");
 }
 
+TEST(ObjectMessages, AreToldWhereTheOdometryHasTheVehicle) {
+  TwoObjects detector;
+  detector.objects_[1].odom_from_box.translation() << 10.0, -3.0, 0.8;
+  detector.objects_[1].velocity << 8.0, 4.0, 0.0;
+  Eigen::Isometry3d odom_from_world(Eigen::AngleAxisd(M_PI_2, Eigen::Vector3d::UnitY()));
+  odom_from_world.pretranslate(Eigen::Vector3d(0.0, 0.0, 2.0));
+  const MovingObject object = toMessage(detector, ros::Time(1.0), "odom", odom_from_world)->objects.at(1);
+  EXPECT_NEAR(object.pose.position.x, 0.8, 1e-12);
+  EXPECT_NEAR(object.pose.position.z, -8.0, 1e-12);
+  EXPECT_NEAR(object.pose.orientation.y, std::sin(M_PI_4), 1e-12);
+  EXPECT_NEAR(object.velocity.z, -8.0, 1e-12);
+  EXPECT_EQ(object.velocity.y, 4.0);
+}
+
 TEST(ObjectMessages, SayAlsoThatNothingMoves) {
   TwoObjects detector;
   detector.reset();
-  EXPECT_TRUE(toMessage(detector, ros::Time(1.0), "odom")->objects.empty());
+  EXPECT_TRUE(toMessage(detector, ros::Time(1.0), "odom", Eigen::Isometry3d::Identity())->objects.empty());
 }
 
 }  // namespace

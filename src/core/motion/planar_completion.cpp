@@ -13,6 +13,14 @@ RegistrationOptions outOfThePlane(RegistrationOptions options) {
   return options;
 }
 
+EchoSelection::Options selectionOf(const PlanarCompletion::Options& options) {
+  EchoSelection::Options selection;
+  selection.farthest = options.near_ground;
+  selection.map_edge = options.kept_edge;
+  selection.least_source = options.least_to_register;
+  return selection;
+}
+
 }  // namespace
 
 void PlaneWatch::follow(const Eigen::Isometry3d& odom_from_base) {
@@ -28,7 +36,7 @@ void PlaneWatch::follow(const Eigen::Isometry3d& odom_from_base) {
 PlanarCompletion::PlanarCompletion(const Options& options)
     : options_(options),
       plane_(options.plane),
-      selection_(options.selection),
+      selection_(selectionOf(options)),
       registration_(outOfThePlane(options.registration)) {}
 
 void PlanarCompletion::reset() {
@@ -37,6 +45,7 @@ void PlanarCompletion::reset() {
   to_keep_.clear();
   tilt_.setZero();
   lift_ = 0.0;
+  completed_from_given_.setIdentity();
 }
 
 void PlanarCompletion::begin() {
@@ -49,7 +58,10 @@ Eigen::Isometry3d PlanarCompletion::complete(const std::vector<Eigen::Vector3f>&
                                              const Eigen::Isometry3d& base_from_sensor,
                                              const Eigen::Isometry3d& odom_from_base) {
   plane_.follow(odom_from_base);
-  if (!isActive()) return odom_from_base;
+  if (!isActive()) {
+    to_keep_.clear();
+    return completed_from_given_ * odom_from_base;
+  }
   if (!map_) map_.emplace(options_.map);  // not before: it is large
   keep();
   select(echoes, base_from_sensor);
@@ -59,7 +71,9 @@ Eigen::Isometry3d PlanarCompletion::complete(const std::vector<Eigen::Vector3f>&
   const bool is_scan = source_.size() >= options_.least_echoes;
   if (has_map_ && is_scan) find();
   has_map_ = has_map_ || is_scan;
-  return completed();
+  const Eigen::Isometry3d pose = completed();
+  completed_from_given_ = pose * odom_from_base.inverse();
+  return pose;
 }
 
 /// Tilted as it was, the vehicle has come higher on its way here.
@@ -117,6 +131,7 @@ void PlanarCompletion::take(const Eigen::Isometry3d& found) {
 void PlanarCompletion::learn(const std::vector<std::uint8_t>& dynamic) {
   if (to_keep_.empty()) return;
   selection_.leaveOutMoving(dynamic, to_keep_);
+  keep();
 }
 
 void PlanarCompletion::keep() {

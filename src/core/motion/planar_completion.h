@@ -41,28 +41,32 @@ class PlaneWatch {
 class PlanarCompletion {
  public:
   struct Options {
-    EchoSelection::Options selection;
     GaussianMap::Options map;
     RegistrationOptions registration;
     PlaneWatch::Options plane;
-    bool any_odometry = false;      ///< complete also one that leaves its plane
-    double gate = 0.3;              ///< the prediction is off by no more, at the echoes [m]
-    std::size_t least_echoes = 50;  ///< fewer are no scan to register
-    double least_matched = 0.1;     ///< with a smaller share of echoes on known surfaces the prediction stands
-    double least_fitting = 0.4;     ///< with a smaller share of these that fit, too
-    double most_lift = 0.3;         ///< no vehicle is so much higher than predicted, from scan to scan [m]
-    double most_tilt = 0.1;         ///< nor tilted by so much more [rad]
-    int most_predicted = 5;         ///< scans in a row that do not fit; then a new map begins
+    /// Echoes beyond are left out [m]: ground is hit there so flatly that its height is known worse than by the map.
+    float near_ground = 40.0F;
+    float kept_edge = 0.4F;               ///< one echo in each such voxel goes into the map [m]
+    std::size_t least_to_register = 500;  ///< echoes to register: three directions ask for half of those of six
+    bool any_odometry = false;            ///< complete also one that leaves its plane
+    double gate = 0.3;                    ///< the prediction is off by no more, at the echoes [m]
+    std::size_t least_echoes = 50;        ///< fewer are no scan to register
+    double least_matched = 0.1;           ///< with a smaller share of echoes on known surfaces the prediction stands
+    double least_fitting = 0.4;           ///< with a smaller share of these that fit, too
+    double most_lift = 0.3;               ///< no vehicle is so much higher than predicted, from scan to scan [m]
+    double most_tilt = 0.1;               ///< nor tilted by so much more [rad]
+    int most_predicted = 5;               ///< scans in a row that do not fit; then a new map begins
   };
 
   PlanarCompletion() : PlanarCompletion(Options()) {}
   explicit PlanarCompletion(const Options& options);
 
-  /// The vehicle's pose at a scan. `echoes` in the sensor frame [m], `odom_from_base` as the odometry has it.
+  /// The vehicle's pose at a scan. `echoes` in the sensor frame [m], `odom_from_base` as the odometry has it. Once the
+  /// odometry leaves its plane, what it lacked until then stays added: poses never step.
   Eigen::Isometry3d complete(const std::vector<Eigen::Vector3f>& echoes, const Eigen::Isometry3d& base_from_sensor,
                              const Eigen::Isometry3d& odom_from_base);
 
-  /// What moves in that scan, 1 for each echo that does: the map is to hold what stands.
+  /// What moves in that scan, 1 for each echo that does: the rest goes into the map, now or with the next scan.
   void learn(const std::vector<std::uint8_t>& dynamic);
 
   /// Whether the odometry is completed: where it has been planar so far, unless any is to be.
@@ -90,7 +94,8 @@ class PlanarCompletion {
   Eigen::Vector3d tilt_ = Eigen::Vector3d::Zero();  // axis times angle [rad], along the ground
   double lift_ = 0.0;                               // [m]
   bool has_map_ = false;
-  int predicted_ = 0;                                        // scans in a row
+  int predicted_ = 0;  // scans in a row
+  Eigen::Isometry3d completed_from_given_ = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d given_ = Eigen::Isometry3d::Identity();  // of the newest scan
   // Of the scan in hand, in the vehicle's frame.
   std::vector<Eigen::Vector3f> source_, to_keep_;

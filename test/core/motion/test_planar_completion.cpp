@@ -42,14 +42,14 @@ Eigen::Isometry3d mounting() {
   return base_from_sensor;
 }
 
-TEST(PlanarCompletion, FindsHeightRollAndPitchToTheRoundingOfTheEchoes) {
+TEST(PlanarCompletion, FindsHeightRollAndPitchToTheSolversLastStep) {
   const auto world = courtyard();
   PlanarCompletion completion;
   for (int i = 0; i < 12; ++i) {
     const auto echoes = seenFrom(truePose(i) * mounting(), world);
     const Eigen::Isometry3d pose = completion.complete(echoes, mounting(), planarPose(i));
     EXPECT_EQ(completion.isActive(), i > 1) << "half a metre has to show that it is planar; scan " << i;
-    EXPECT_LT(distanceBetween(pose, truePose(i)), 5e-5) << i;
+    EXPECT_LT(distanceBetween(pose, truePose(i)), 3e-4) << i;
     EXPECT_LT(rotationBetween(pose, truePose(i)), 4e-4) << i;  // yaw is kept, in which tilts show squared
   }
 }
@@ -70,17 +70,22 @@ TEST(PlanarCompletion, KeepsPlaceAndYawAsGiven) {
   }
 }
 
-TEST(PlanarCompletion, LeavesOdometryThatLeavesItsPlaneAsItIs) {
+TEST(PlanarCompletion, EndsWithoutAStepWhereOdometryLeavesItsPlane) {
   const auto world = courtyard();
   PlanarCompletion completion;
+  Eigen::Isometry3d given_before = planarPose(0), pose_before = given_before;
   for (int i = 0; i < 8; ++i) {
     Eigen::Isometry3d given = planarPose(i);
     if (i == 5) given.translation().z() = 0.002;  // once is enough
     const Eigen::Isometry3d pose =
         completion.complete(seenFrom(truePose(i), world), Eigen::Isometry3d::Identity(), given);
     EXPECT_EQ(completion.isActive(), i > 1 && i < 5) << i;
-    EXPECT_TRUE(completion.isActive() || pose.isApprox(given, 0.0)) << i;
+    const double step = distanceBetween(pose_before.inverse() * pose, given_before.inverse() * given);
+    EXPECT_EQ(step > (i < 5 ? 1e-3 : 1e-12), i == 4) << "there is something to find in scan 4 alone; scan " << i;
+    given_before = given;
+    pose_before = pose;
   }
+  EXPECT_GT(distanceBetween(pose_before, given_before), 0.01) << "what was lacking is kept";
   completion.reset();
   for (int i = 0; i < 3; ++i) {
     completion.complete(seenFrom(truePose(i), world), Eigen::Isometry3d::Identity(), planarPose(i));
