@@ -48,7 +48,6 @@ class PlanarCompletion {
     float near_ground = 40.0F;
     float kept_edge = 0.4F;               ///< one echo in each such voxel goes into the map [m]
     std::size_t least_to_register = 500;  ///< echoes to register: three directions ask for half of those of six
-    bool any_odometry = false;            ///< complete also one that leaves its plane
     double gate = 0.3;                    ///< the prediction is off by no more, at the echoes [m]
     std::size_t least_echoes = 50;        ///< fewer are no scan to register
     double least_matched = 0.1;           ///< with a smaller share of echoes on known surfaces the prediction stands
@@ -69,8 +68,8 @@ class PlanarCompletion {
   /// What moves in that scan, 1 for each echo that does: the rest goes into the map, now or with the next scan.
   void learn(const std::vector<std::uint8_t>& dynamic);
 
-  /// Whether the odometry is completed: where it has been planar so far, unless any is to be.
-  bool isActive() const { return options_.any_odometry || plane_.isPlanar(); }
+  /// Whether the odometry is completed: where it has been planar so far.
+  bool isActive() const { return plane_.isPlanar(); }
 
   /// The odometry begins anew, in a plane of its own.
   void reset();
