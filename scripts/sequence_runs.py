@@ -6,7 +6,7 @@ import shutil
 import subprocess
 import sys
 
-BUILT = pathlib.Path(__file__).resolve().parents[1] / "build/.workspace/devel/lib/donex/donex_sequence"
+BUILT = pathlib.Path(__file__).resolve().parents[1] / "build/.workspace/devel/lib/donex"
 
 
 @dataclasses.dataclass
@@ -29,12 +29,24 @@ class Figures:
         return f"{values}, {float(self.milliseconds):.0f} ms"
 
 
-def program():
+def program(name="donex_sequence"):
     """The one on the path first (a sourced workspace or install space), then what the scripts built here."""
-    found = shutil.which("donex_sequence") or (str(BUILT) if BUILT.exists() else None)
+    beside = BUILT / name
+    found = shutil.which(name) or (str(beside) if beside.exists() else None)
     if found is None:
-        sys.exit(f"donex_sequence is neither on the path nor in {BUILT.parent}: run scripts/demo or scripts/test first")
+        sys.exit(f"{name} is neither on the path nor in {BUILT}: run scripts/demo or scripts/test first")
     return found
+
+
+def simulated(folder, scenes, seeds):
+    """Simulated drives of 5 s, written where they are missing."""
+    for scene in scenes:
+        for seed in seeds:
+            drive = folder / f"{scene}_{seed}"
+            if not (drive / "times.txt").exists():
+                subprocess.run([program("donex_simulate"), scene, drive, "--seed", seed, "--duration", "5"], check=True,
+                               stdout=subprocess.DEVNULL)
+            yield drive
 
 
 def label(sequence, arguments=(), settings=()):
