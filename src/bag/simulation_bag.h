@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include <rosbag/bag.h>
 
@@ -16,11 +18,12 @@ double leastStart(const simulation::OdometryOptions& odometry);
 
 struct SimulationBagSummary {
   std::size_t clouds = 0, odometry = 0;
+  std::vector<std::string> frames;  ///< of the sensors
 };
 
-/// Topics /points (frame velodyne, with per-echo time, ring and ground-truth label), /odom (odom, base_link),
-/// /tf (the odometry's motion), /tf_static (mounting). The scene must have a duration, and begin at leastStart() or
-/// later. `progress` is called after each scan. Throws DataError.
+/// Topics /points (all sensors, each in a frame of its own, the only one in velodyne; with per-echo time, ring and
+/// ground-truth label), /odom (odom, base_link), /tf (the odometry's motion), /tf_static (mountings). The scene must
+/// have a duration, and begin at leastStart() or later. `progress` is called after each scan. Throws DataError.
 SimulationBagSummary writeSimulationBag(simulation::Simulator& simulator, const std::filesystem::path& file,
                                         rosbag::CompressionType compression, const std::function<void()>& progress);
 

@@ -1,24 +1,11 @@
 #include "evaluation/scan_parts.h"
 
-#include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include "core/pi.h"
+#include "core/sector.h"
 
 namespace donex {
-namespace {
-
-std::size_t sectorOf(const Eigen::Vector3f& echo, std::size_t sectors) {
-  const float azimuth = std::atan2(echo.y(), echo.x());
-  if (!std::isfinite(azimuth)) return 0;
-  const float turn = azimuth / (2.0F * kPiF);
-  const float share = turn < 0.0F ? turn + 1.0F : turn;
-  return std::min(static_cast<std::size_t>(share * static_cast<float>(sectors)), sectors - 1);
-}
-
-}  // namespace
 
 ScanParts::ScanParts(std::size_t parts) {
   if (parts < 1 || parts > kMost) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/sector.h"
 #include "donex/scan.h"
 
 namespace donex {
@@ -28,7 +29,7 @@ class ScanParts {
   /// Enters the labels of a part of the last cut into those of the whole scan, which have room for all of them.
   void putBack(std::size_t part, const EchoLabels& labels, EchoLabels& whole) const;
 
-  static constexpr std::size_t kMost = 1000;
+  static constexpr std::size_t kMost = kMostSectors;
 
  private:
   std::vector<Scan> parts_;

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "donex/motion/ego_motion.h"
 #include "io/number_text.h"
@@ -40,6 +41,12 @@ std::string listOfPatterns() {
   return text;
 }
 
+std::string listOfRigs() {
+  std::string text;
+  for (const simulation::Rig& rig : simulation::rigs()) text += fmt::format("{:<18} {}\n", rig.name, rig.meaning);
+  return text;
+}
+
 std::string listOfScenes() {
   std::string text;
   for (const std::string& name : simulation::sceneNames()) {
@@ -49,10 +56,10 @@ std::string listOfScenes() {
 }
 
 void check(const Arguments& arguments) {
-  std::string faults = simulation::faultsOf(arguments.scene, arguments.options);
+  std::vector<std::string> faults = simulation::faultsOf(arguments.scene, arguments.options);
   const bool endless = arguments.options.duration == 0.0;
-  if (endless) faults += (faults.empty() ? "" : "\n") + std::string("duration is 0: no file is endless");
-  if (!faults.empty()) throw ArgumentError(faults);
+  if (endless) faults.emplace_back("duration is 0: no file is endless");
+  if (!faults.empty()) throw ArgumentError(fmt::format("{}", fmt::join(faults, "\n")));
 }
 
 /// The scan as the layout holds it; its pose is the true one or what the odometry says.
@@ -71,7 +78,7 @@ class SequenceScans {
   SequenceScan convert(const SimulatedScan& scan) {
     for (const OdometrySample& sample : scan.odometry) motion_.add(sample);
     SequenceScan result;
-    result.stamp = scan.stamp;
+    result.stamp = scan.sent;
     for (const simulation::SimulatedEcho& echo : scan.echoes) {
       result.echoes.push_back(echo.position);
       result.intensities.push_back(echo.intensity);
@@ -97,6 +104,10 @@ struct Count {
 };
 
 void writeSequence(const CLI::App& app, const Arguments& arguments) {
+  if (arguments.options.mountings().size() > 1) {
+    throw ArgumentError("a sequence cannot tell which sensor a scan is of: write a bag of rig " +
+                        arguments.options.rig);
+  }
   if (arguments.options.distortion) {
     warn(app, "the layout of a sequence has no time for each echo: the distortion cannot be undone; write a bag");
   }
@@ -133,8 +144,8 @@ void writeBag(const CLI::App& app, Arguments& arguments) {
   const auto summary = writeSimulationBag(simulator, arguments.out, parseCompression(arguments.compression),
                                           [&] { progress->advance(); });
   progress.reset();
-  fmt::print("{} clouds on /points, {} odometry messages on /odom, tf odom <- base_link <- velodyne\n", summary.clouds,
-             summary.odometry);
+  fmt::print("{} clouds on /points, {} odometry messages on /odom, tf odom <- base_link <- {}\n", summary.clouds,
+             summary.odometry, fmt::join(summary.frames, ", "));
 }
 
 #else
@@ -154,7 +165,8 @@ void run(const CLI::App& app, Arguments& arguments) {
 int main(int argc, char** argv) {
   CLI::App app("Writes a simulated drive with ground truth.", "donex_simulate");
   donex::Arguments arguments;
-  app.footer("Scenes:\n" + donex::listOfScenes() + "\nPatterns:\n" + donex::listOfPatterns());
+  app.footer("Scenes:\n" + donex::listOfScenes() + "\nPatterns:\n" + donex::listOfPatterns() + "\nRigs:\n" +
+             donex::listOfRigs());
   app.add_option("SCENE", arguments.scene, "one of the scenes below")->required();
   app.add_option("OUT", arguments.out, "a .bag, or a directory for a sequence (SemanticKITTI layout)")->required();
   app.add_option("--poses", arguments.poses, "of a sequence: true, or odometry with its errors; by default true")

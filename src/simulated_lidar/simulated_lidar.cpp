@@ -4,7 +4,6 @@
 #include <condition_variable>
 #include <future>
 #include <mutex>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -60,18 +59,24 @@ Settings readSettings(const ros::NodeHandle& pnh) {
   visitOptions(settings.options, OptionReader{parameters});
 
   std::vector<std::string> faults = parameters.faults();
-  for (const std::string& fault : settings.options.faults()) faults.push_back(fault);
-  if (!simulation::isScene(settings.scene)) faults.push_back(simulation::unknownScene(settings.scene));
+  for (const std::string& fault : simulation::faultsOf(settings.scene, settings.options)) faults.push_back(fault);
+  const bool has_rig = settings.options.rig != SimulatorOptions().rig;
+  if (has_rig && pnh.hasParam("sensor_frame")) {
+    faults.emplace_back("sensor_frame is for a single sensor: the frames of a rig are called as its sensors");
+  }
   if (faults.empty()) return settings;
   throw std::invalid_argument("bad parameters in " + pnh.getNamespace() + ": " + joined(faults));
 }
 
 /// A scan and all that is sent with it, ready to send.
-struct Turn {
-  double stamp = 0.0;
+struct Sending {
+  double due = 0.0;  // [s]
   sensor_msgs::PointCloud2Ptr cloud;
   std::vector<OdometrySample> odometry;
 };
+
+/// Of all sensors, in all parts: parts of it leave no time to measure the next turn between them.
+using Turn = std::vector<Sending>;
 
 }  // namespace
 
@@ -83,13 +88,16 @@ class SimulatedLidar::Implementation {
  private:
   void run();
   void play();
-  std::optional<Turn> nextTurn();
-  void send(const Turn& turn);
+  Turn nextTurn();
+  bool send(const Sending& sending);
+  void tellMountings(double stamp);
   void sendOdometry(const OdometrySample& sample);
   bool waitUntil(double stamp);
 
   Settings settings_;
   std::unique_ptr<Simulator> simulator_;
+  std::vector<geometry_msgs::TransformStamped> mountings_;
+  double told_ = 0.0;  // when they were sent [s]
   ros::Publisher cloud_publisher_, odometry_publisher_;
   tf2_ros::StaticTransformBroadcaster mounting_broadcaster_;
   tf2_ros::TransformBroadcaster broadcaster_;
@@ -124,51 +132,59 @@ void SimulatedLidar::Implementation::run() {
   }
 }
 
-/// While one scan is sent, the next is measured.
+/// While one turn is sent, the next is measured.
 void SimulatedLidar::Implementation::play() {
   // Begins late enough for the first scan to be measured in time.
   constexpr double kHeadStart = 0.5;  // [s]
   settings_.options.start_stamp = ros::WallTime::now().toSec() + kHeadStart;
   simulator_ = std::make_unique<Simulator>(settings_.scene, settings_.options);
-  const auto mounting = mountingOf(simulator_->baseFromSensor(), settings_.options.start_stamp, settings_.frames);
-  mounting_broadcaster_.sendTransform(mounting);
+  mountings_ = mountingsOf(*simulator_, settings_.options.start_stamp, settings_.frames);
+  mounting_broadcaster_.sendTransform(mountings_);
   ROS_INFO("simulated LiDAR: %s, %d beams: %s", settings_.scene.c_str(), simulator_->beams(),
            simulation::sceneMeaning(settings_.scene).c_str());
 
   const auto measure = [this] { return std::async(std::launch::async, [this] { return nextTurn(); }); };
   auto coming = measure();
-  // roscpp can lose a latched message for a node that subscribes at the moment of publishing: it is sent again.
-  constexpr double kTellAgain = 1.0;  // [s]
-  double told = 0.0;
-  while (const std::optional<Turn> turn = coming.get()) {
-    if (turn->stamp >= told + kTellAgain) {
-      mounting_broadcaster_.sendTransform(mounting);
-      told = turn->stamp;
-    }
+  for (Turn turn = coming.get(); !turn.empty(); turn = coming.get()) {
+    tellMountings(turn.front().due);
     coming = measure();
-    send(*turn);
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (stop_) return;
+    for (const Sending& sending : turn) {
+      if (!send(sending)) return;
+    }
   }
   ROS_INFO("simulated LiDAR: %s is over after %g s", settings_.scene.c_str(), settings_.options.duration);
 }
 
-std::optional<Turn> SimulatedLidar::Implementation::nextTurn() {
-  SimulatedScan scan;
-  if (!simulator_->next(scan)) return std::nullopt;
-  return Turn{scan.stamp, toCloud(scan, settings_.frames), std::move(scan.odometry)};
+/// roscpp can lose a latched message for a node that subscribes at the moment of publishing: it is sent again.
+void SimulatedLidar::Implementation::tellMountings(double stamp) {
+  constexpr double kTellAgain = 1.0;  // [s]
+  if (stamp < told_ + kTellAgain) return;
+  mounting_broadcaster_.sendTransform(mountings_);
+  told_ = stamp;
 }
 
-void SimulatedLidar::Implementation::send(const Turn& turn) {
-  const auto due = [](const OdometrySample& sample, double stamp) { return sample.stamp < stamp; };
-  const auto after = std::lower_bound(turn.odometry.begin(), turn.odometry.end(), turn.stamp, due);
-  for (auto sample = turn.odometry.begin(); sample != after; ++sample) {
-    if (!waitUntil(sample->stamp)) return;
+/// Empty when the drive is over.
+Turn SimulatedLidar::Implementation::nextTurn() {
+  Turn turn;
+  SimulatedScan scan;
+  while (turn.size() < simulator_->scansPerTurn() && simulator_->next(scan)) {
+    turn.push_back({scan.sent, toCloud(scan, settings_.frames), std::move(scan.odometry)});
+  }
+  return turn;
+}
+
+/// False when the node ends.
+bool SimulatedLidar::Implementation::send(const Sending& sending) {
+  const auto is_before = [](const OdometrySample& sample, double stamp) { return sample.stamp < stamp; };
+  const auto after = std::lower_bound(sending.odometry.begin(), sending.odometry.end(), sending.due, is_before);
+  for (auto sample = sending.odometry.begin(); sample != after; ++sample) {
+    if (!waitUntil(sample->stamp)) return false;
     sendOdometry(*sample);
   }
-  if (!waitUntil(turn.stamp)) return;
-  cloud_publisher_.publish(turn.cloud);
-  std::for_each(after, turn.odometry.end(), [this](const OdometrySample& sample) { sendOdometry(sample); });
+  if (!waitUntil(sending.due)) return false;
+  cloud_publisher_.publish(sending.cloud);
+  std::for_each(after, sending.odometry.end(), [this](const OdometrySample& sample) { sendOdometry(sample); });
+  return true;
 }
 
 void SimulatedLidar::Implementation::sendOdometry(const OdometrySample& sample) {

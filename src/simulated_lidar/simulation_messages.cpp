@@ -37,7 +37,7 @@ void addFields(sensor_msgs::PointCloud2& cloud) {
 sensor_msgs::PointCloud2Ptr toCloud(const simulation::SimulatedScan& scan, const SimulationFrames& frames) {
   std_msgs::Header header;
   header.stamp = ros::Time(scan.stamp);
-  header.frame_id = frames.sensor;
+  header.frame_id = frames.of(scan.sensor);
   auto cloud = makeCloud(header, scan.echoes.size(), sizeof(Row));
   cloud->is_dense = true;
   addFields(*cloud);
@@ -76,6 +76,16 @@ geometry_msgs::TransformStamped mountingOf(const Eigen::Isometry3d& base_from_se
   message.header.frame_id = frames.base;
   message.child_frame_id = frames.sensor;
   return message;
+}
+
+std::vector<geometry_msgs::TransformStamped> mountingsOf(const simulation::Simulator& simulator, double stamp,
+                                                         const SimulationFrames& frames) {
+  std::vector<geometry_msgs::TransformStamped> mountings;
+  for (std::size_t i = 0; i < simulator.sensorCount(); ++i) {
+    mountings.push_back(mountingOf(simulator.baseFromSensor(i), stamp, frames));
+    mountings.back().child_frame_id = frames.of(simulator.sensorName(i));
+  }
+  return mountings;
 }
 
 }  // namespace donex

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <geometry_msgs/TransformStamped.h>
 #include <nav_msgs/Odometry.h>
@@ -14,7 +15,10 @@ namespace donex {
 struct SimulationFrames {
   std::string odom = "odom";
   std::string base = "base_link";
-  std::string sensor = "velodyne";
+  std::string sensor = "velodyne";  ///< of the only one; those of a rig are called as the rig does
+
+  /// Of a sensor by its name in the rig.
+  const std::string& of(const std::string& name) const { return name.empty() ? sensor : name; }
 };
 
 /// Not organised: x, y, z, intensity, time (FLOAT32), ring (UINT16) as Velodyne's drivers write them, and the ground
@@ -31,5 +35,9 @@ geometry_msgs::TransformStamped toTransform(const OdometrySample& sample, const 
 /// base -> sensor.
 geometry_msgs::TransformStamped mountingOf(const Eigen::Isometry3d& base_from_sensor, double stamp,
                                            const SimulationFrames& frames);
+
+/// The same of every sensor of the rig.
+std::vector<geometry_msgs::TransformStamped> mountingsOf(const simulation::Simulator& simulator, double stamp,
+                                                         const SimulationFrames& frames);
 
 }  // namespace donex

@@ -12,6 +12,7 @@ struct Entry {
   const char* name;
   const char* meaning;
   Scene (*make)(std::uint64_t seed);
+  bool has_vehicle = true;
 };
 
 constexpr std::array kScenes{
@@ -36,7 +37,7 @@ constexpr std::array kScenes{
     Entry{"doors", "doors of parked cars open on both sides", makeDoors},
     Entry{"far_people", "people on foot 25 to 48 m away: few echoes each", makeFarPeople},
     Entry{"corners", "people, cyclists and cars come out from behind walls", makeCorners},
-    Entry{"empty_room", "a room at rest, seen by a 16-beam sensor: nothing moves", makeEmptyRoom},
+    Entry{"empty_room", "a room at rest, seen by a 16-beam sensor: nothing moves", makeEmptyRoom, false},
 };
 
 const Entry* find(const std::string& name) {
@@ -65,6 +66,8 @@ const std::vector<std::string>& sceneNames() {
 }
 
 bool isScene(const std::string& name) { return find(name) != nullptr; }
+
+bool hasVehicle(const std::string& scene) { return entryOf(scene).has_vehicle; }
 
 std::string sceneMeaning(const std::string& scene) { return entryOf(scene).meaning; }
 

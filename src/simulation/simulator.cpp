@@ -1,23 +1,22 @@
 #include "simulation/simulator.h"
 
 #include <cmath>
-#include <optional>
 #include <stdexcept>
 
-#include "simulation/disturbance.h"
 #include "simulation/odometry_error.h"
-#include "simulation/scan_pattern.h"
 #include "simulation/scene.h"
-#include "simulation/sweep.h"
+#include "simulation/simulated_sensor.h"
 
 namespace donex::simulation {
 
-std::string faultsOf(const std::string& scene, const SimulatorOptions& options) {
+std::vector<std::string> faultsOf(const std::string& scene, const SimulatorOptions& options) {
   std::vector<std::string> faults = options.faults();
-  if (!isScene(scene)) faults.push_back(unknownScene(scene));
-  std::string text;
-  for (const std::string& fault : faults) text += (text.empty() ? "" : "\n") + fault;
-  return text;
+  if (!isScene(scene)) {
+    faults.push_back(unknownScene(scene));
+  } else if (faults.empty() && options.mountings().size() > 1 && !hasVehicle(scene)) {
+    faults.push_back(scene + " has one sensor and no vehicle: not with a rig of several");
+  }
+  return faults;
 }
 
 Scan SimulatedScan::coreScan() const {
@@ -34,33 +33,10 @@ namespace {
 
 /// Checks everything that can be wrong before anything is built.
 SimulatorOptions checked(const std::string& scene, const SimulatorOptions& options) {
-  const std::string faults = faultsOf(scene, options);
-  if (!faults.empty()) throw std::invalid_argument(faults);
+  std::string text;
+  for (const std::string& fault : faultsOf(scene, options)) text += (text.empty() ? "" : "\n") + fault;
+  if (!text.empty()) throw std::invalid_argument(text);
   return options;
-}
-
-SensorOptions sensorOptions(const SimulatorOptions& options) {
-  SensorOptions sensor;
-  sensor.duration = 1.0 / options.scan_rate;
-  sensor.distortion = options.distortion;
-  sensor.range_noise = options.range_noise;
-  sensor.dropout = options.dropout;
-  sensor.max_range = options.max_range;
-  sensor.seed = static_cast<std::uint64_t>(options.seed);
-  return sensor;
-}
-
-std::optional<ScanPattern> patternOf(const SimulatorOptions& options) {
-  const Pattern pattern = options.chosenPattern();
-  if (pattern.kind == PatternKind::kSpinning) return std::nullopt;
-  return ScanPattern(pattern, 1.0 / options.scan_rate, static_cast<std::uint64_t>(options.seed));
-}
-
-SensorModel firstModel(const SimulatorOptions& options, const Scene& scene, const std::optional<ScanPattern>& pattern) {
-  if (!pattern) return makeSensorModel(options.beams == 0 ? scene.beams : options.beams);
-  SensorModel model;
-  pattern->aim(0, model);
-  return model;
 }
 
 /// Heading and place of the vehicle at the start; the vertical stays the vertical.
@@ -78,12 +54,15 @@ struct Simulator::State {
   State(const std::string& name, const SimulatorOptions& given)
       : options(checked(name, given)),
         scene(makeScene(name, static_cast<std::uint64_t>(given.seed))),
-        pattern(patternOf(given)),
-        sensor(firstModel(given, scene, pattern)),
-        sweep(scene, sensor, sensorOptions(given)),
+        parts(given),
         odometry_error(given.odometry, scramble(static_cast<std::uint64_t>(given.seed), 0x0D0)),
         odom_from_scene(odomFrom(poseOf(scene.ego, scene.ground, 0.0))),
-        next_sample(-given.odometry.early()) {}
+        next_sample(-given.odometry.early()) {
+    const std::vector<Mounting>& mountings = options.mountings();
+    for (std::size_t i = 0; i < mountings.size(); ++i) {
+      sensors.push_back(std::make_unique<SimulatedSensor>(scene, options, mountings[i], i));
+    }
+  }
 
   double period() const { return 1.0 / options.scan_rate; }
   Eigen::Isometry3d odomFromBase(double time) const { return odom_from_scene * poseOf(scene.ego, scene.ground, time); }
@@ -92,9 +71,8 @@ struct Simulator::State {
 
   SimulatorOptions options;
   Scene scene;
-  std::optional<ScanPattern> pattern;  // not of a spinning sensor
-  SensorModel sensor;                  // of the scan that comes
-  Sweep sweep;
+  TurnParts parts;
+  std::vector<std::unique_ptr<SimulatedSensor>> sensors;
   OdometryError odometry_error;
   Eigen::Isometry3d odom_from_scene;
   long next_sample;  // counted from the scene's beginning
@@ -124,21 +102,25 @@ Simulator::~Simulator() = default;
 Simulator::Simulator(Simulator&&) noexcept = default;
 Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 
-std::size_t Simulator::size() const { return state_->options.scans(); }
+std::size_t Simulator::scansPerTurn() const { return state_->parts.count() * sensorCount(); }
+std::size_t Simulator::size() const { return state_->options.turns() * scansPerTurn(); }
 
 bool Simulator::next(SimulatedScan& scan) {
   State& state = *state_;
   const bool over = state.options.duration > 0.0 && state.next_scan >= size();
   if (over) return false;
-  const double time = static_cast<double>(state.next_scan + 1) * state.period();
-  scan.stamp = state.options.start_stamp + time;
-  scan.odom_from_base = state.odomFromBase(time);
-  scan.base_from_sensor = state.scene.ego.base_from_sensor;
-  if (state.pattern) state.pattern->aim(state.next_scan, state.sensor);
-  state.sweep.measure(time, state.next_scan, scan.echoes, scan.labels);
-  const Disturbance disturbance(state.options.disturbance, static_cast<std::uint64_t>(state.options.seed));
-  disturbance.apply(state.next_scan, scan.echoes, scan.labels);
-  state.report(time, scan.odometry);
+  const std::size_t turn = state.next_scan / scansPerTurn(), place = state.next_scan % scansPerTurn();
+  const double end = static_cast<double>(turn + 1) * state.period();
+  if (place == 0) {
+    for (const auto& sensor : state.sensors) sensor->measure(end, turn);
+  }
+  const std::size_t part = place / sensorCount();
+  const PartTimes times = state.parts.timesOf(part, end);
+  scan.stamp = state.options.start_stamp + times.stamp;
+  scan.sent = state.options.start_stamp + times.sent;
+  scan.odom_from_base = state.odomFromBase(times.stamp);
+  state.sensors[place % sensorCount()]->takePart(part, scan);
+  state.report(times.sent, scan.odometry);
   ++state.next_scan;
   return true;
 }
@@ -147,7 +129,13 @@ Eigen::Isometry3d Simulator::odomFromBase(double stamp) const {
   return state_->odomFromBase(stamp - state_->options.start_stamp);
 }
 
-Eigen::Isometry3d Simulator::baseFromSensor() const { return state_->scene.ego.base_from_sensor; }
+std::size_t Simulator::sensorCount() const { return state_->sensors.size(); }
+
+const std::string& Simulator::sensorName(std::size_t sensor) const { return state_->sensors.at(sensor)->name(); }
+
+Eigen::Isometry3d Simulator::baseFromSensor(std::size_t sensor) const {
+  return state_->sensors.at(sensor)->baseFromSensor();
+}
 
 std::size_t Simulator::moverCount() const { return state_->scene.movers.size(); }
 
@@ -164,7 +152,7 @@ MoverTruth Simulator::mover(std::size_t number, double stamp) const {
   return truth;
 }
 
-int Simulator::beams() const { return state_->sensor.beams(); }
-int Simulator::columns() const { return state_->sensor.columns(); }
+int Simulator::beams() const { return state_->sensors.front()->model().beams(); }
+int Simulator::columns() const { return state_->sensors.front()->model().columns(); }
 
 }  // namespace donex::simulation

@@ -13,9 +13,11 @@
 
 namespace donex::simulation {
 
-/// One turn of the sensor; it is complete at `stamp`.
+/// One cloud of a sensor: a turn, or a part of one.
 struct SimulatedScan {
-  double stamp = 0.0;
+  double stamp = 0.0;  ///< that its echoes are given for [s]
+  double sent = 0.0;   ///< the stamp, but of parts without distortion: those come one after the other [s]
+  std::string sensor;  ///< its name in the rig; empty for the only one
   std::vector<SimulatedEcho> echoes;
   /// One per echo, as SemanticKITTI has them: lower 16 bits the class, upper 16 the moving object's number.
   /// 252 car or van, 253 cyclist, 254 person, 257 bus, 258 lorry: faster than kMovingSpeed by itself.
@@ -24,7 +26,8 @@ struct SimulatedScan {
   std::vector<std::uint32_t> labels;
   Eigen::Isometry3d odom_from_base = Eigen::Isometry3d::Identity();  ///< true motion, at `stamp`
   Eigen::Isometry3d base_from_sensor = Eigen::Isometry3d::Identity();
-  /// What the odometry has said since the scan before, oldest first; stamps up to `stamp` (+ stamp_offset).
+  /// What the odometry has said since the scan before, oldest first; stamps up to `sent` (+ stamp_offset). Scans of
+  /// the same time: the first of them.
   std::vector<OdometrySample> odometry;
 
   /// As the core takes it, with the true motion.
@@ -45,10 +48,12 @@ inline constexpr double kSettleTime = 1.0;   ///< slower for this long: it stand
 /// intersection street motorway bend, and the hard cases; in the order of the documentation.
 const std::vector<std::string>& sceneNames();
 bool isScene(const std::string& name);
+/// Whether the sensor is on a vehicle. Throws std::invalid_argument for an unknown name.
+bool hasVehicle(const std::string& scene);
 /// The message for a scene that isn't there: names those that are.
 std::string unknownScene(const std::string& name);
-/// Every fault of a drive, one line each: unknown scene, options; empty when the drive is possible.
-std::string faultsOf(const std::string& scene, const SimulatorOptions& options);
+/// Every fault of a drive, one sentence each: unknown scene, options; empty when the drive is possible.
+std::vector<std::string> faultsOf(const std::string& scene, const SimulatorOptions& options);
 /// One sentence. Throws std::invalid_argument for an unknown name.
 std::string sceneMeaning(const std::string& scene);
 
@@ -61,18 +66,24 @@ class Simulator {
   Simulator(Simulator&&) noexcept;
   Simulator& operator=(Simulator&&) noexcept;
 
-  /// The next turn of the sensor; false when the duration is over, then `scan` is untouched.
+  /// The next scan: turn after turn, part after part, of each sensor at the same time. False when the duration is over,
+  /// then `scan` is untouched.
   bool next(SimulatedScan& scan);
 
   /// True motion at any moment of the scene [s].
   Eigen::Isometry3d odomFromBase(double stamp) const;
-  Eigen::Isometry3d baseFromSensor() const;
+  std::size_t sensorCount() const;
+  /// Empty for the only sensor.
+  const std::string& sensorName(std::size_t sensor) const;
+  Eigen::Isometry3d baseFromSensor(std::size_t sensor = 0) const;
   /// The moving objects; `number` counts from 0, one less than in the labels.
   std::size_t moverCount() const;
   MoverTruth mover(std::size_t number, double stamp) const;
 
   int beams() const;    ///< rays a firing
   int columns() const;  ///< firings a turn: beams() x columns() rays
+  /// Parts of a turn, of every sensor.
+  std::size_t scansPerTurn() const;
   /// Scans in the whole duration; 0: endless.
   std::size_t size() const;
 

@@ -46,6 +46,24 @@ void addPatternFaults(const SimulatorOptions& options, std::vector<std::string>&
   if (pattern.ray_rate < kFewest * options.scan_rate) faults.emplace_back("ray_rate leaves less than 100 rays a scan");
 }
 
+void addRigFaults(const SimulatorOptions& options, std::vector<std::string>& faults) {
+  if (!faults.empty()) return;
+  const std::vector<Mounting>& mountings = options.mountings();
+  const DisturbanceOptions& disturbance = options.disturbance;
+  const bool knows_the_vehicle = disturbance.own_body || disturbance.dust > 0.0 || disturbance.spray > 0.0;
+  if (mountings.size() > 1 && knows_the_vehicle) {
+    faults.emplace_back("own_body, dust and spray are as one sensor on the roof sees them: not with a rig of several");
+  }
+  constexpr double kAllAround = 360.0;  // [deg]
+  const auto sees_half = [](const Mounting& mounting) { return mounting.sees_half; };
+  const bool sees_all_around =
+      options.chosenPattern().width >= kAllAround && std::none_of(mountings.begin(), mountings.end(), sees_half);
+  if (options.parts > 1 && !options.distortion && !sees_all_around) {
+    faults.emplace_back(
+        "parts without distortion are sectors all around, where these sensors do not look: add distortion");
+  }
+}
+
 }  // namespace
 
 OdometryOptions OdometryOptions::exact() {
@@ -74,7 +92,13 @@ Pattern SimulatorOptions::chosenPattern() const {
   return chosen;
 }
 
-std::size_t SimulatorOptions::scans() const {
+const std::vector<Mounting>& SimulatorOptions::mountings() const {
+  const Rig* found = findRig(rig);
+  if (found == nullptr) throw std::out_of_range("no rig '" + rig + "'");
+  return found->mountings;
+}
+
+std::size_t SimulatorOptions::turns() const {
   constexpr double kRounding = 1e-6;
   return static_cast<std::size_t>(std::floor(duration * scan_rate + kRounding));
 }
@@ -86,7 +110,8 @@ std::vector<std::string> SimulatorOptions::faults() const {
   const bool within = beams >= 0 && beams <= 128;
   if (within && !known_beams) faults.push_back("beams is " + std::to_string(beams) + ", must be 16, 32, 64, 128 or 0");
   addPatternFaults(*this, faults);
-  const bool ends_early = faults.empty() && duration > 0.0 && scans() == 0;
+  addRigFaults(*this, faults);
+  const bool ends_early = faults.empty() && duration > 0.0 && turns() == 0;
   if (ends_early) {
     std::ostringstream text;
     text << "duration is " << duration << " s, shorter than a scan, which takes " << 1.0 / scan_rate << " s";

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "core/sector.h"
 #include "simulation/disturbance.h"
+#include "simulation/rig.h"
 #include "simulation/scan_pattern.h"
 
 namespace donex::simulation {
@@ -41,6 +43,8 @@ struct SimulatorOptions {
   double scan_rate = 10.0;   // [Hz]
   double start_stamp = 0.0;  // [s]
   bool distortion = false;
+  int parts = 1;
+  std::string rig = "single";
   double range_noise = 0.015;  // [m]
   double dropout = 0.01;
   double max_range = 120.0;  // [m]
@@ -52,8 +56,10 @@ struct SimulatorOptions {
 
   /// The pattern as chosen, with what is said otherwise of it. Throws std::out_of_range for an unknown one.
   Pattern chosenPattern() const;
-  /// Scans in the whole duration; 0: endless.
-  std::size_t scans() const;
+  /// Where the sensors sit. Throws std::out_of_range for an unknown rig.
+  const std::vector<Mounting>& mountings() const;
+  /// Turns in the whole duration; 0: endless.
+  std::size_t turns() const;
 };
 
 struct OptionInfo {
@@ -86,6 +92,9 @@ void visitOptions(Options& options, Visitor&& visit) {
         options.start_stamp, 0.0, 4e9);
   visit(OptionInfo{"distortion", "", "echoes measured one after the other while the vehicle moves, each with its time"},
         options.distortion);
+  visit(OptionInfo{"parts", "", "clouds a turn; with distortion each at its own time, without sectors around"},
+        options.parts, 1, static_cast<int>(kMostSectors));
+  visit(OptionInfo{"rig", "", "the sensors on the vehicle, on one topic"}, options.rig, rigNames());
   visit(OptionInfo{"range_noise", "m", "along the ray, standard deviation"}, options.range_noise, 0.0, 1.0);
   visit(OptionInfo{"dropout", "", "fraction of the echoes that are lost without a reason"}, options.dropout, 0.0, 1.0);
   visit(OptionInfo{"max_range", "m", "no echo comes from further away"}, options.max_range, 5.0, 300.0);

@@ -19,8 +19,14 @@ constexpr double kWindFrequency = 0.6;  // [Hz]
 
 }  // namespace
 
-Sweep::Sweep(const Scene& scene, const SensorModel& model, const SensorOptions& options)
-    : scene_(scene), model_(model), options_(options), window_(scene.ground), caster_(model) {
+Sweep::Sweep(const Scene& scene, const Eigen::Isometry3d& base_from_sensor, const SensorModel& model,
+             const SensorOptions& options)
+    : scene_(scene),
+      base_from_sensor_(base_from_sensor),
+      model_(model),
+      options_(options),
+      window_(scene.ground),
+      caster_(model) {
   hits_.resize(static_cast<std::size_t>(model.beams()));
 }
 
@@ -145,6 +151,10 @@ void Sweep::receive(const Echo& echo) {
   labels_->push_back(surface.label);
 }
 
+bool Sweep::sees(int column) const {
+  return !options_.sees_half || model_.headings[static_cast<std::size_t>(column)].x() >= 0.0;
+}
+
 void Sweep::fire(int column) {
   const double after = options_.distortion ? options_.duration * ((column + 0.5) / model_.columns() - 1.0) : 0.0;
   const Eigen::Isometry3d sensor = sensorAt(after);
@@ -173,7 +183,7 @@ void Sweep::measure(double time, std::size_t turn, std::vector<SimulatedEcho>& e
   knots_.clear();
   for (int i = options_.distortion ? 0 : kKnots; i <= kKnots; ++i) {
     const double at = time - options_.duration * (1.0 - static_cast<double>(i) / kKnots);
-    knots_.push_back(poseOf(scene_.ego, scene_.ground, at) * scene_.ego.base_from_sensor);
+    knots_.push_back(poseOf(scene_.ego, scene_.ground, at) * base_from_sensor_);
   }
   anchor_ = knots_.back().translation();
   window_.moveTo(anchor_.head<2>());
@@ -184,7 +194,9 @@ void Sweep::measure(double time, std::size_t turn, std::vector<SimulatedEcho>& e
   for (int i = 0; i < stretches; ++i) {
     const Stretch stretch = stretchOf(model_.columns() * i / stretches, model_.columns() * (i + 1) / stretches);
     caster_.prepare(targets_, stretch);
-    for (int column = stretch.first_column; column < stretch.end_column; ++column) fire(column);
+    for (int column = stretch.first_column; column < stretch.end_column; ++column) {
+      if (sees(column)) fire(column);
+    }
   }
 }
 

@@ -11,7 +11,8 @@
 namespace donex::simulation {
 
 struct SensorOptions {
-  double duration = 0.1;  ///< of a turn [s]
+  bool sees_half = false;  ///< only what lies ahead of it
+  double duration = 0.1;   ///< of a turn [s]
   bool distortion = false;
   double range_noise = 0.015;  ///< [m]
   double dropout = 0.01;
@@ -24,8 +25,9 @@ inline std::uint32_t instanceBits(std::size_t mover) { return (static_cast<std::
 
 class Sweep {
  public:
-  /// Both must outlive it.
-  Sweep(const Scene& scene, const SensorModel& model, const SensorOptions& options);
+  /// Scene and model must outlive it.
+  Sweep(const Scene& scene, const Eigen::Isometry3d& base_from_sensor, const SensorModel& model,
+        const SensorOptions& options);
 
   /// The turn that is complete at `time` [s]; `turn` numbers it for the noise. Overwrites both.
   void measure(double time, std::size_t turn, std::vector<SimulatedEcho>& echoes, std::vector<std::uint32_t>& labels);
@@ -49,11 +51,13 @@ class Sweep {
   void gatherMover(std::size_t index);
   double passingTime(const Eigen::Vector3d& place) const;
   Stretch stretchOf(int first_column, int end_column) const;
+  bool sees(int column) const;
   void fire(int column);
   void receive(const Echo& echo);
   Eigen::Vector3f normalOf(const Echo& echo, const Eigen::Vector3f& point, const Eigen::Vector3f& direction) const;
 
   const Scene& scene_;
+  Eigen::Isometry3d base_from_sensor_;
   const SensorModel& model_;
   SensorOptions options_;
   GroundWindow window_;

@@ -1,7 +1,11 @@
 // A simulated drive as a bag.
+#include <algorithm>
+
 #include <gtest/gtest.h>
 #include <nav_msgs/Odometry.h>
 #include <sensor_msgs/PointCloud2.h>
+#include <tf2_eigen/tf2_eigen.h>
+#include <tf2_msgs/TFMessage.h>
 
 #include "bag/bags.h"
 #include "bag/simulation_bag.h"
@@ -84,6 +88,87 @@ TEST(SimulationBag, IsLabelledWholly) {
   const LabelBagSummary summary = test::label(file, directory.path() / "labelled.bag");
   EXPECT_EQ(summary.counts.clouds_labeled, 10U);
   EXPECT_EQ(summary.counts.dropped.total(), 0U);
+}
+
+std::vector<sensor_msgs::PointCloud2ConstPtr> cloudsOf(const std::filesystem::path& file,
+                                                       const simulation::SimulatorOptions& options) {
+  simulation::Simulator simulator("street", options);
+  const auto summary = writeSimulationBag(simulator, file, rosbag::compression::Uncompressed, [] {});
+  auto clouds = test::readTopic<sensor_msgs::PointCloud2>(file, "/points");
+  EXPECT_EQ(clouds.size(), simulator.size());
+  EXPECT_EQ(clouds.size(), summary.clouds);
+  return clouds;
+}
+
+void expectLabelledWholly(const test::TemporaryDirectory& directory, const std::filesystem::path& file,
+                          std::size_t clouds) {
+  const LabelBagSummary summary = test::label(file, directory.path() / "labelled.bag");
+  EXPECT_EQ(summary.counts.clouds_labeled, clouds);
+  EXPECT_EQ(summary.counts.dropped.total(), 0U);
+  EXPECT_GT(summary.evaluation.total().moving(), 0U) << "scored by the truth they carry";
+}
+
+TEST(SimulationBag, HoldsEverySensorOfARigOnOneTopic) {
+  for (const simulation::Rig& rig : simulation::rigs()) {
+    const test::TemporaryDirectory directory;
+    const auto file = directory.path() / "drive.bag";
+    simulation::SimulatorOptions options = shortDrive();
+    options.rig = rig.name;
+    const auto clouds = cloudsOf(file, options);
+    const std::size_t sensors = rig.mountings.size();
+    ASSERT_EQ(clouds.size(), 10U * sensors) << rig.name;
+
+    const auto statics = test::readTopic<tf2_msgs::TFMessage>(file, "/tf_static");
+    ASSERT_EQ(statics.size(), 1U) << rig.name;
+    ASSERT_EQ(statics[0]->transforms.size(), sensors) << rig.name;
+    const simulation::Simulator simulator("street", options);
+    for (std::size_t i = 0; i < sensors; ++i) {
+      const geometry_msgs::TransformStamped& mounting = statics[0]->transforms[i];
+      const std::string name = rig.mountings[i].sensor;
+      EXPECT_EQ(mounting.header.frame_id, "base_link");
+      EXPECT_EQ(mounting.child_frame_id, name.empty() ? "velodyne" : name);
+      EXPECT_TRUE(tf2::transformToEigen(mounting).isApprox(simulator.baseFromSensor(i), 1e-9)) << name;
+      const auto in_this_frame = [&](const auto& cloud) { return cloud->header.frame_id == mounting.child_frame_id; };
+      EXPECT_EQ(std::count_if(clouds.begin(), clouds.end(), in_this_frame), 10) << name;
+    }
+    for (std::size_t i = 0; i < clouds.size(); ++i) {
+      EXPECT_EQ(clouds[i]->header.stamp, clouds[i - i % sensors]->header.stamp) << "their clocks are synchronised";
+    }
+    expectLabelledWholly(directory, file, clouds.size());
+  }
+}
+
+TEST(SimulationBag, HoldsThePartsOfARigEachAtItsTime) {
+  const test::TemporaryDirectory directory;
+  const auto file = directory.path() / "drive.bag";
+  simulation::SimulatorOptions options = shortDrive();
+  options.rig = "roof_bumper";
+  options.parts = 4;
+  options.distortion = true;
+  const auto clouds = cloudsOf(file, options);
+  ASSERT_EQ(clouds.size(), 80U);
+  for (std::size_t i = 0; i < clouds.size(); ++i) {
+    EXPECT_NEAR(clouds[i]->header.stamp.toSec(), 5.0 + 0.025 * static_cast<double>(i / 2 + 1), 1e-6);
+  }
+  expectLabelledWholly(directory, file, clouds.size());
+}
+
+TEST(SimulationBag, HoldsPartsWithoutDistortionOneAfterTheOther) {
+  const test::TemporaryDirectory directory;
+  const auto file = directory.path() / "drive.bag";
+  simulation::SimulatorOptions options = shortDrive();
+  options.parts = 10;
+  const auto clouds = cloudsOf(file, options);
+  ASSERT_EQ(clouds.size(), 100U);
+  for (std::size_t i = 0; i < clouds.size(); ++i) {
+    EXPECT_NEAR(clouds[i]->header.stamp.toSec(), 5.1 + 0.1 * static_cast<double>(i / 10), 1e-6);
+  }
+  std::size_t part = 0;
+  for (const test::RawMessage& message : test::readAll(file)) {
+    if (message.topic != "/points") continue;
+    EXPECT_NEAR(message.time.toSec(), 5.1 + 0.01 * static_cast<double>(part++), 1e-6);
+  }
+  expectLabelledWholly(directory, file, clouds.size());
 }
 
 }  // namespace

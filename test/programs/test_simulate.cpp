@@ -80,9 +80,38 @@ TEST_F(Simulate, WarnsThatASequenceCannotHoldTheTimes) {
   expect(0, {"has no time for each echo"}, "street out --duration 0.2 --beams 16 --distortion");
 }
 
+TEST_F(Simulate, WritesAScanPerPart) {
+  expect(0, {"24 scans"}, "street parts --duration 0.6 --beams 16 --parts 4 --distortion");
+  expect(0, {"6 scans"}, "street whole --duration 0.6 --beams 16 --distortion");
+  const SequenceReader parts(path("parts")), whole(path("whole"));
+  ASSERT_EQ(parts.size(), 24U);
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    SequenceScan together;
+    std::vector<std::uint32_t> labels;
+    for (std::size_t k = 4 * i; k < 4 * i + 4; ++k) {
+      EXPECT_NEAR(parts.stamp(k), 0.025 * static_cast<double>(k + 1), 1e-6);
+      const SequenceScan part = parts.scan(k);
+      together.echoes.insert(together.echoes.end(), part.echoes.begin(), part.echoes.end());
+      const auto labels_of_part = parts.labels(k);
+      labels.insert(labels.end(), labels_of_part.begin(), labels_of_part.end());
+    }
+    EXPECT_EQ(together.echoes, whole.scan(i).echoes);
+    EXPECT_EQ(labels, whole.labels(i));
+  }
+}
+
+TEST_F(Simulate, WritesARigAsABagOnly) {
+  expect(0, {"10 clouds", "base_link <- roof, bumper"}, "street out.bag --duration 0.5 --beams 16 --rig roof_bumper");
+  expect(2, {"cannot tell which sensor a scan is of", "roof_bumper"}, "street out --duration 0.5 --rig roof_bumper");
+  EXPECT_FALSE(std::filesystem::exists(path("out")));
+}
+
 TEST_F(Simulate, NamesEveryWrongArgumentAndWritesNothing) {
   expect(2, {"moon", "empty_room", "beams", "dropout"}, "moon out --beams 5 --dropout 7");
   expect(2, {"duration"}, "street out --duration 0");
+  expect(2, {"parts is 0, must be between 1 and 1000"}, "street out --parts 0");
+  expect(2, {"--rig", "roof_bumper"}, "street out --rig front_back");
+  expect(2, {"sectors all around", "add distortion"}, "street out --parts 4 --pattern avia");
   expect(2, {"duration is 0.05 s, shorter than a scan"}, "street out --duration 0.05");
   expect(2, {"SCENE"}, "");
   expect(2, {"poses"}, "street out --poses none");

@@ -80,7 +80,7 @@ struct Drive {
     const auto sensor = simulation::makeSensorModel(kBeams);
     simulation::SensorOptions options;
     options.distortion = distortion;
-    simulation::Sweep sweep(scene, sensor, options);
+    simulation::Sweep sweep(scene, scene.ego.base_from_sensor, sensor, options);
     Config config;
     config.motion.deskew = deskew;
     tf2::BufferCore tf;

@@ -75,6 +75,26 @@ TEST_F(SimulatedLidarTest, TellsTheMountingAndTheMotionByTf) {
   EXPECT_NEAR(buffer.lookupTransform("base_link", "velodyne", ros::Time(0)).transform.translation.z, 1.73, 1e-6);
 }
 
+TEST_F(SimulatedLidarTest, SendsThePartsOfARigOnOneTopic) {
+  tf2_ros::Buffer buffer;
+  const tf2_ros::TransformListener listener(buffer);
+  pnh_.setParam("rig", "front_rear");
+  pnh_.setParam("parts", 4);
+  pnh_.setParam("distortion", true);
+  const SimulatedLidar lidar(nh_, pnh_);
+  ASSERT_TRUE(waitFor([this] { return received_.size() >= 40; }));
+  for (std::size_t i = 0; i + 1 < received_.size(); i += 2) {
+    EXPECT_EQ(received_[i]->header.frame_id, "front");
+    EXPECT_EQ(received_[i + 1]->header.frame_id, "rear");
+    EXPECT_EQ(received_[i]->header.stamp, received_[i + 1]->header.stamp);
+    const auto& before = received_[i < 2 ? 0 : i - 2];
+    EXPECT_NEAR((received_[i]->header.stamp - before->header.stamp).toSec(), i < 2 ? 0.0 : 0.025, 1e-5);
+  }
+  for (const char* frame : {"front", "rear"}) {
+    EXPECT_TRUE(waitFor([&] { return buffer.canTransform("odom", frame, ros::Time(0)); })) << frame;
+  }
+}
+
 TEST_F(SimulatedLidarTest, TellsTheMountingAgainToWhomTheLatchedMessagePassedBy) {
   std::size_t told = 0;
   const boost::function<void(const tf2_msgs::TFMessageConstPtr&)> count = [&](const auto& message) {
@@ -110,7 +130,16 @@ TEST_F(SimulatedLidarTest, NamesEveryFaultOfItsParameters) {
   pnh_.setParam("dropout", "much");
   pnh_.setParam("range_nois", 0.1);
   pnh_.setParam("odometry_rate", 0);
-  expectRefused({"strret", "empty_room", "beams", "17", "dropout", "a number", "range_nois", "odometry_rate"});
+  pnh_.setParam("rig", "front_back");
+  pnh_.setParam("parts", 0);
+  expectRefused({"strret", "empty_room", "beams", "17", "dropout", "a number", "range_nois", "odometry_rate",
+                 "front_back", "roof_bumper", "parts is 0"});
+}
+
+TEST_F(SimulatedLidarTest, OnlyASingleSensorsFrameCanBeNamed) {
+  pnh_.setParam("sensor_frame", "lidar");
+  pnh_.setParam("rig", "roof_bumper");
+  expectRefused({"sensor_frame is for a single sensor"});
 }
 
 /// In one manager with the classifier, which gets the very messages that were published.

@@ -3,21 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include "simulation/same_scan.h"
 #include "simulation/sensor_model.h"
 #include "simulation/simulator.h"
 
 namespace donex::simulation {
 namespace {
-
-bool sameScan(const SimulatedScan& a, const SimulatedScan& b) {
-  if (a.echoes.size() != b.echoes.size() || a.labels != b.labels || a.stamp != b.stamp) return false;
-  for (std::size_t i = 0; i < a.echoes.size(); ++i) {
-    const SimulatedEcho& p = a.echoes[i];
-    const SimulatedEcho& q = b.echoes[i];
-    if (p.position != q.position || p.intensity != q.intensity || p.time != q.time || p.ring != q.ring) return false;
-  }
-  return true;
-}
 
 TEST(Simulator, SameSeedSameScansOtherSeedOthers) {
   SimulatorOptions options;
@@ -199,7 +190,7 @@ TEST(Simulator, ADurationHoldsAtLeastAScan) {
   EXPECT_EQ(options.faults(), expected);
   options.scan_rate = 20.0;
   EXPECT_TRUE(options.faults().empty());
-  EXPECT_EQ(options.scans(), 1U);
+  EXPECT_EQ(options.turns(), 1U);
 }
 
 TEST(SimulatedScan, IsTakenByTheCoreWithItsTrueMotion) {
