@@ -93,6 +93,7 @@ EchoClock::State EchoClock::stateOf(const CloudLayout& layout, const CloudLayout
   if (!layout.time) return wanted_.empty() ? State::kNoField : State::kTold;
   if (!used.time) return not_understood_ < kPatience ? State::kNotYet : State::kNotUnderstood;
   if (!times.problem.empty()) return State::kStrange;
+  if (layout.echoes() == 0) return state_;  // a part in which the sensor saw nothing tells nothing
   if (times.empty() || times.first == times.last) return State::kAlike;
   return choice_.reading().undoesNothing() && !layout.time->is_told ? State::kUndone : State::kTimes;
 }

@@ -25,7 +25,7 @@ inline std::uint32_t instanceBits(std::size_t mover) { return (static_cast<std::
 
 class Sweep {
  public:
-  /// Scene and model must outlive it.
+  /// The first three must outlive it.
   Sweep(const Scene& scene, const Eigen::Isometry3d& base_from_sensor, const SensorModel& model,
         const SensorOptions& options);
 
@@ -57,7 +57,7 @@ class Sweep {
   Eigen::Vector3f normalOf(const Echo& echo, const Eigen::Vector3f& point, const Eigen::Vector3f& direction) const;
 
   const Scene& scene_;
-  Eigen::Isometry3d base_from_sensor_;
+  const Eigen::Isometry3d& base_from_sensor_;
   const SensorModel& model_;
   SensorOptions options_;
   GroundWindow window_;
