@@ -15,6 +15,9 @@ namespace donex {
 /// Connected echoes of the present scan, and what their places say. Only the segmenter writes it.
 struct Segment {
   explicit Segment(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) : echoes(memory) {}
+  /// Moved, never copied: with Eigen 3.3 a vector would copy its segments as it grows, out of the scan's memory.
+  Segment(Segment&&) = default;
+  Segment& operator=(Segment&&) = default;
 
   std::pmr::vector<std::uint32_t> echoes;  ///< indices into the scan
   int new_echoes = 0;

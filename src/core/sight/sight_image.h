@@ -36,6 +36,12 @@ class SightImage {
     }
   };
 
+  SightImage() = default;
+  /// Moved, never copied: with Eigen 3.3 a vector of what also holds a pose would copy its elements as it grows, and copies
+  /// lack the reserved storage.
+  SightImage(SightImage&&) = default;
+  SightImage& operator=(SightImage&&) = default;
+
   /// Forgets everything.
   void clear();
   /// Adds what a cloud saw, given in the image's own frame. A cloud may be any part of what the sensor sees: directions
