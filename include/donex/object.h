@@ -18,7 +18,7 @@ struct Object {
   bool dynamic = false;
   Proof proof = Proof::kNone;  ///< of its motion in the present scan
   double age = 0.0;            ///< time since first seen [s]
-  std::uint32_t echoes = 0;    ///< echoes of the present scan that belong to it
+  std::uint32_t echoes = 0;    ///< echoes of the present turn, as far as it has come, that belong to it
 };
 
 }  // namespace donex

@@ -1,6 +1,7 @@
 // A scan as the steps of evidence see it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -27,7 +28,8 @@ enum class ClusterRole : std::uint8_t {
   kLoose,     ///< in none: alone in its direction while the air is full of such echoes
 };
 
-/// One entry per echo. Points are the echoes in the grid's window, z up [m].
+/// One entry per echo; while objects are looked for, points, heights, roles and places have entries of earlier parts of
+/// the turn, too, behind those of the cloud itself. Points are the echoes in the grid's window, z up [m].
 struct JudgedScan {
   double stamp = 0.0;  ///< [s]
   Eigen::Isometry3d odom_from_points = Eigen::Isometry3d::Identity();
@@ -39,6 +41,11 @@ struct JudgedScan {
   bool has_ground = true;              ///< otherwise heights are above the window's lowest corner
   std::vector<ClusterRole> roles;
   std::vector<Place> places;
+  std::size_t beside = 0;       ///< entries of earlier parts of the turn
+  bool continues_turn = false;  ///< earlier parts of the turn have been judged
+
+  /// Entries of the cloud itself.
+  std::size_t own() const { return points.size() - beside; }
 };
 
 }  // namespace donex

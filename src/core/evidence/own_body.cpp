@@ -44,6 +44,7 @@ float OwnBody::farthestFrom(const Eigen::Vector3f& mounting) const {
 }
 
 void OwnBody::leaveOut(const Scan& scan, std::vector<std::uint8_t>& is_solid) const {
+  if (!is_found_ && !hasBox()) return;
   const Eigen::Isometry3f base_from_sensor = scan.base_from_sensor.cast<float>();
   const float farthest = detects() ? farthestFrom(base_from_sensor.translation()) : 0.0F;
   for (std::size_t i = 0; i < scan.echoes.size(); ++i) {
@@ -80,9 +81,11 @@ void OwnBody::beginTurn(const Scan& scan) {
 }
 
 void OwnBody::count() {
+  is_found_ = false;
   for (std::size_t cell = 0; cell < counts_.size(); ++cell) {
     const int count = counts_[cell] + (hit_[cell] != 0 ? options_.gain : -options_.loss);
     counts_[cell] = static_cast<std::uint8_t>(std::clamp(count, 0, options_.most));
+    is_found_ = is_found_ || counts_[cell] >= options_.body;
   }
   std::fill(hit_.begin(), hit_.end(), std::uint8_t{0});
 }
@@ -90,7 +93,7 @@ void OwnBody::count() {
 void OwnBody::reset() {
   std::fill(counts_.begin(), counts_.end(), std::uint8_t{0});
   std::fill(hit_.begin(), hit_.end(), std::uint8_t{0});
-  has_place_ = is_counting_ = false;
+  has_place_ = is_counting_ = is_found_ = false;
 }
 
 double OwnBody::bytesFor(const SelfConfig& config) {

@@ -66,6 +66,7 @@ class OwnBody {
   std::vector<std::uint8_t> counts_;  ///< by cell
   std::vector<std::uint8_t> hit_;     ///< by cell: in this turn
   bool has_place_ = false, is_counting_ = false;
+  bool is_found_ = false;  ///< some cell is the body's
   Eigen::Vector3f center_ = Eigen::Vector3f::Zero();      ///< of the cells, in the vehicle [m]
   Eigen::Vector3d last_place_ = Eigen::Vector3d::Zero();  ///< of the vehicle, counted last, in the odometry frame [m]
 };

@@ -10,6 +10,7 @@
 #include "core/methods/evidence_explanation.h"
 #include "core/methods/stream_guard.h"
 #include "core/objects/object_tracker.h"
+#include "core/objects/parts_beside.h"
 #include "core/objects/segmenter.h"
 #include "core/objects/trimmer.h"
 #include "core/pi.h"
@@ -24,7 +25,13 @@ struct EvidenceDetectorOptions {
   double least_ground = 0.05;       ///< of the echoes in the region; with fewer on it the ground is taken for removed
   double most_beneath = 0.25;       ///< as many as lie on it; with more beneath it is none
   float ground_roughness = 0.1F;    ///< echoes so near to the ground's height lie on it [m]
+  std::size_t ground_stride = 4;    ///< of the echoes that are asked for it: shares need no more
   double history_spacing = 0.09;    ///< a 10 Hz sensor's every scan, a 20 Hz sensor's every second [s]
+};
+
+/// How a turn's echoes in the region lie to the ground that was found.
+struct GroundCount {
+  std::size_t inside = 0, on = 0, beneath = 0;
 };
 
 SightHistory historyOf(const EvidenceConfig& e, const EvidenceDetectorOptions& options) {
@@ -60,13 +67,17 @@ class EvidenceDetector : public Detector {
     loose_echoes_.loosen(part, scan.stamp, sights_.newest(), judged_.roles);
     const SightView before = sights_.seenBefore(judged_.odom_from_points);
     judgePlaces(before);
+    if (config_.objects.enabled) parts_.join(part, scan, sights_.newest(), sights_.turns(), judged_);
     sights_.add(scan, judged_.is_solid);
     const ScanSight now = sights_.newestSeenFrom(judged_.odom_from_points);
     if (config_.objects.enabled) {
-      tracker_.predict(scan.stamp, predictions_);
+      tracker_.predict(judged_, predictions_);
       segmenter_.segment(judged_, predictions_, segments_);
+      parts_.relate(judged_, segments_);
       tracker_.update(judged_, segments_, predictions_, now, verdicts_);
       trimmer_.trim(judged_, segments_, verdicts_, proofs_);
+      parts_.settle(segments_, verdicts_, judged_);
+      proofs_.resize(judged_.points.size());
     } else {
       proveByPlaces();
     }
@@ -77,9 +88,11 @@ class EvidenceDetector : public Detector {
     places_.reset();
     guard_.reset();
     clock_.reset();
+    ground_now_ = ground_before_ = GroundCount();
     sights_.reset();
     own_body_.reset();
     loose_echoes_.reset();
+    parts_.reset();
     tracker_.reset();
     proofs_.clear();
   }
@@ -111,7 +124,7 @@ class EvidenceDetector : public Detector {
         segments_.memoryBytes() + predictions_.capacity() * sizeof(Prediction) + verdicts_.capacity() * sizeof(Verdict);
     return in_grid + judged + decided + places_.memoryBytes() + sights_.memoryBytes() + own_body_.memoryBytes() +
            loose_echoes_.memoryBytes() + ground_.memoryBytes() + segmenter_.memoryBytes() + trimmer_.memoryBytes() +
-           tracker_.memoryBytes();
+           tracker_.memoryBytes() + parts_.memoryBytes();
   }
 
  private:
@@ -124,19 +137,22 @@ class EvidenceDetector : public Detector {
   }
 
   /// Whether hardly an echo in the region lies on what was found, or many lie beneath it: then somebody has removed the
-  /// ground, and the lowest echoes of objects stand in for it.
-  bool isGroundMissing() const {
-    std::size_t inside = 0, on_ground = 0, beneath = 0;
-    for (std::size_t i = 0; i < judged_.points.size(); ++i) {
+  /// ground, and the lowest echoes of objects stand in for it. Parts are asked together with the turn before.
+  bool isGroundMissing(TurnPart part) {
+    if (part != TurnPart::kContinuing) {
+      ground_before_ = part == TurnPart::kFirst ? ground_now_ : GroundCount();
+      ground_now_ = GroundCount();
+    }
+    for (std::size_t i = 0; i < judged_.points.size(); i += options_.ground_stride) {
       if (in_voxels_.inside[i] == 0) continue;
       const float height = judged_.heights[i];
-      ++inside;
-      beneath += height < -options_.ground_roughness ? 1U : 0U;
-      on_ground += std::abs(height) <= options_.ground_roughness ? 1U : 0U;
+      ++ground_now_.inside;
+      ground_now_.beneath += height < -options_.ground_roughness ? 1U : 0U;
+      ground_now_.on += std::abs(height) <= options_.ground_roughness ? 1U : 0U;
     }
-    const auto on = static_cast<double>(on_ground);
-    return on < options_.least_ground * static_cast<double>(inside) ||
-           static_cast<double>(beneath) > options_.most_beneath * on;
+    const auto on = static_cast<double>(ground_now_.on + ground_before_.on);
+    return on < options_.least_ground * static_cast<double>(ground_now_.inside + ground_before_.inside) ||
+           static_cast<double>(ground_now_.beneath + ground_before_.beneath) > options_.most_beneath * on;
   }
 
   float clearance() const { return static_cast<float>(config_.evidence.ground_clearance); }
@@ -156,7 +172,7 @@ class EvidenceDetector : public Detector {
     if (enabled) {
       ground_.estimate(part, judged_.odom_from_points.translation(), judged_.sensor, judged_.points, judged_.is_solid);
       ground_.heightsOf(judged_.points, judged_.heights);
-      lacks_ground_ = isGroundMissing();
+      lacks_ground_ = isGroundMissing(part);
       if (lacks_ground_) {
         for (float& height : judged_.heights) height += clearance();  // nothing is on the ground
       }
@@ -220,6 +236,7 @@ class EvidenceDetector : public Detector {
   LooseEchoes loose_echoes_;
   Ground ground_;
   Segmenter segmenter_;
+  PartsBeside parts_;
   ObjectTracker tracker_;
   Trimmer trimmer_;
 
@@ -230,6 +247,7 @@ class EvidenceDetector : public Detector {
   Segments segments_;
   Verdicts verdicts_;
   std::vector<Proof> proofs_;  ///< per echo
+  GroundCount ground_now_, ground_before_;  ///< of this turn, and of the turn before
   bool lacks_ground_ = false;
 };
 

@@ -118,6 +118,13 @@ void Clusters::number() {
   }
 }
 
+int Clusters::countWithin(std::size_t echoes) const {
+  if (echoes == of_.size()) return count();
+  int highest = kNone;
+  for (std::size_t i = 0; i < echoes; ++i) highest = std::max(highest, of_[i]);
+  return highest + 1;
+}
+
 double Clusters::bytesFor(double reach, const Options& options, double echoes, double connected) {
   constexpr double kEchoesACell = 6.0, kCellsAColumn = 3.0;
   const double columns = connected / kEchoesACell / kCellsAColumn, layers = options.height / options.cell + 1.0;

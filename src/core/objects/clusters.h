@@ -32,6 +32,8 @@ class Clusters {
   /// Cluster of an echo, 0 to count() - 1, or kNone.
   int of(std::size_t echo) const { return of_[echo]; }
   int count() const { return static_cast<int>(echoes_in_.size()); }
+  /// Clusters with any of the first `echoes`: these come first.
+  int countWithin(std::size_t echoes) const;
   std::size_t echoesIn(int cluster) const { return echoes_in_[static_cast<std::size_t>(cluster)]; }
 
   std::size_t memoryBytes() const;

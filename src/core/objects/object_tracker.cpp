@@ -9,13 +9,16 @@ namespace donex {
 ObjectTracker::ObjectTracker(const ObjectConfig& config, const TrackerOptions& options)
     : config_(config), options_(options), rules_(config), traces_(options.look_back.back(), options.lost_after) {}
 
-void ObjectTracker::predict(double stamp, Predictions& predictions) const {
+void ObjectTracker::predict(const JudgedScan& scan, Predictions& predictions) const {
   predictions.clear();
-  for (const Track& track : tracks_) {
+  for (const Followed& followed : tracks_) {
+    const bool is_of_this_turn = scan.continues_turn && followed.turn == turn_;
+    if (is_of_this_turn && !followed.before) continue;
+    const Track& track = is_of_this_turn ? *followed.before : followed.now;
     if (!track.dynamic) continue;
     const bool goes_on =
-        stamp - track.last_moved_whole < options_.moves_on && track.velocity.norm() > options_.moves_on_speed;
-    predictions.push_back({track.centerAt(stamp), track.extent, track.full_extent, goes_on});
+        scan.stamp - track.last_moved_whole < options_.moves_on && track.velocity.norm() > options_.moves_on_speed;
+    predictions.push_back({track.centerAt(scan.stamp), track.extent, track.full_extent, goes_on});
   }
 }
 
@@ -24,6 +27,7 @@ void ObjectTracker::update(const JudgedScan& scan, const Segments& segments, con
   objects_.clear();
   verdicts.assign(segments.size(), Verdict{});
   sensor_ = scan.odom_from_points * scan.sensor.cast<double>();
+  if (!scan.continues_turn) ++turn_;
   traces_.begin(scan.stamp);
   match(scan.stamp, segments);
   const MotionTests tests(scan, now, test_options_);
@@ -37,54 +41,114 @@ void ObjectTracker::update(const JudgedScan& scan, const Segments& segments, con
     if (track.ever_dynamic) describe(track, verdicts[i].proof, scan, segment);
   }
   complete(segments, predictions, verdicts);
-  const auto is_lost = [&](const Track& track) { return track.last_seen < scan.stamp - options_.lost_after; };
+  const auto is_lost = [&](const Followed& followed) {
+    return followed.now.last_seen < scan.stamp - options_.lost_after;
+  };
   tracks_.erase(std::remove_if(tracks_.begin(), tracks_.end(), is_lost), tracks_.end());
+}
+
+ObjectTracker::Track ObjectTracker::newTrack(std::uint32_t id, double stamp, const Segment& segment) {
+  Track track;
+  track.id = id;
+  track.first_seen = track.last_seen = stamp;
+  track.center = segment.center();
+  track.extent = track.full_extent = segment.extent();
+  return track;
 }
 
 ObjectTracker::Track& ObjectTracker::trackOf(std::size_t segment_index, double stamp, const Segment& segment) {
   const int known = track_of_[segment_index];
-  if (known >= 0) {
-    follow(tracks_[static_cast<std::size_t>(known)], stamp, segment);
-    return tracks_[static_cast<std::size_t>(known)];
+  if (known < 0) {
+    tracks_.push_back({newTrack(next_id_++, stamp, segment), {}, turn_});
+    return tracks_.back().now;
   }
-  Track track;
-  track.id = next_id_++;
-  track.first_seen = track.last_seen = stamp;
-  track.center = segment.center();
-  track.extent = track.full_extent = segment.extent();
-  tracks_.push_back(std::move(track));
-  return tracks_.back();
+  Followed& followed = tracks_[static_cast<std::size_t>(known)];
+  if (isNewcomer(followed)) {
+    followed.now = newTrack(followed.now.id, stamp, segment);
+    return followed.now;
+  }
+  followed.before = beforeTurn(followed);
+  followed.turn = turn_;
+  follow(followed.now = *followed.before, stamp, segment);
+  return followed.now;
 }
 
 void ObjectTracker::match(double stamp, const Segments& segments) {
+  track_of_.assign(segments.size(), -1);
+  for (Followed& followed : tracks_) followed.is_found = false;
+  claimParts(segments);
   pairs_.clear();
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
-    const Track& track = tracks_[t];
+    const Followed& followed = tracks_[t];
+    const bool is_complete = followed.turn == turn_ && !followed.is_claimed;
+    if (is_complete || isNewcomer(followed)) continue;
+    const Track& track = beforeTurn(followed);
     const Eigen::Vector3d predicted = track.centerAt(stamp);
-    const bool has_velocity = track.first_seen < track.last_seen;
-    const double step = has_velocity ? rules_.options().followed_distance : options_.first_step;
     for (std::size_t c = 0; c < segments.size(); ++c) {
       const double distance = (segments[c].center() - predicted).norm();
-      if (distance > step || !rules_.areAlike(track.extent, segments[c].extent())) continue;
-      pairs_.push_back({distance, t, c});
+      const bool is_alike = distance <= stepOf(track) && rules_.areAlike(track.extent, segments[c].extent());
+      if (is_alike || mayBeginWith(track, predicted, segments[c])) pairs_.push_back({distance, t, c});
     }
   }
   // The nearest pairs first: what stands still finds itself and leaves the rest to what moves.
   std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
     return std::tie(a.distance, a.track, a.segment) < std::tie(b.distance, b.track, b.segment);
   });
-  track_of_.assign(segments.size(), -1);
-  for (Track& track : tracks_) track.is_found = false;
   for (const Pair& pair : pairs_) {
     if (tracks_[pair.track].is_found || track_of_[pair.segment] >= 0) continue;
     tracks_[pair.track].is_found = true;
     track_of_[pair.segment] = static_cast<int>(pair.track);
   }
+  settleClaims();
+}
+
+/// What goes on from an earlier part of the turn is known already, but with more of it another track may fit better.
+void ObjectTracker::claimParts(const Segments& segments) {
+  claim_of_.assign(segments.size(), -1);
+  for (Followed& followed : tracks_) followed.is_claimed = false;
+  for (std::size_t c = 0; c < segments.size(); ++c) {
+    if (segments[c].object == 0) continue;
+    const auto known = std::find_if(tracks_.begin(), tracks_.end(), [&](const Followed& followed) {
+      return followed.now.id == segments[c].object && !followed.is_claimed;
+    });
+    if (known == tracks_.end()) continue;
+    known->is_claimed = true;
+    claim_of_[c] = static_cast<int>(known - tracks_.begin());
+  }
+}
+
+void ObjectTracker::settleClaims() {
+  for (std::size_t c = 0; c < claim_of_.size(); ++c) {
+    if (claim_of_[c] < 0) continue;
+    Followed& claimed = tracks_[static_cast<std::size_t>(claim_of_[c])];
+    if (claimed.is_found) continue;
+    if (track_of_[c] < 0) {
+      claimed.is_found = true;
+      track_of_[c] = claim_of_[c];
+    } else if (isNewcomer(claimed)) {
+      claimed.now.last_seen = kNever;  // what it was taken for is another track
+    } else {
+      claimed.now = *claimed.before;
+      claimed.turn = turn_ - 1;
+    }
+  }
+}
+
+double ObjectTracker::stepOf(const Track& track) const {
+  const bool has_velocity = track.first_seen < track.last_seen;
+  return has_velocity ? rules_.options().followed_distance : options_.first_step;
+}
+
+/// The first part of what moves lies somewhere in it.
+bool ObjectTracker::mayBeginWith(const Track& track, const Eigen::Vector3d& predicted, const Segment& segment) const {
+  const Eigen::Array3d half = 0.5 * track.full_extent.array() + options_.whole_rim;
+  return segment.goes_on && track.dynamic && ((segment.low - predicted).array() > -half).all() &&
+         ((segment.high - predicted).array() < half).all();
 }
 
 void ObjectTracker::follow(Track& track, double stamp, const Segment& segment) const {
   const double elapsed = stamp - track.last_seen;
-  if (elapsed > 0.0) {
+  if (elapsed > 0.0 && !segment.goes_on) {
     const Eigen::Vector3d velocity = (segment.center() - track.center) / elapsed;
     const bool is_second = track.last_seen <= track.first_seen;
     const double newest = is_second ? 1.0 : 1.0 - std::exp(-elapsed / options_.velocity_time);
@@ -106,6 +170,7 @@ void ObjectTracker::testMotion(Track& track, const MotionTests& tests, double st
     const FormerPlace former = tests.lookBack(trace);
     receded |= former.left >= config_.min_echoes && former.left > former.still;
     advanced |= former.left >= test_options_.least_left && segment.new_echoes >= config_.min_echoes;
+    if (segment.goes_on) continue;  // its shape is of two times
     const bool has_changed = std::max(segment.new_echoes, former.left) >= test_options_.least_left;
     const bool fit_tells = rules_.isUpright(segment) || has_changed;
     moved = moved || (fit_tells && tests.hasMoved(trace, segment));
@@ -135,7 +200,7 @@ Verdict ObjectTracker::decide(Track& track, const MotionTests& tests, double sta
   if (is_proven_now) track.last_motion = stamp;
   track.dynamic = proof != Proof::kNone;
   track.ever_dynamic = track.ever_dynamic || track.dynamic;
-  return {proof, stamp - track.last_moved_whole <= options_.released_after};
+  return {proof, stamp - track.last_moved_whole <= options_.released_after, track.id};
 }
 
 void ObjectTracker::complete(const Segments& segments, const Predictions& predictions, Verdicts& verdicts) const {
@@ -149,7 +214,7 @@ void ObjectTracker::complete(const Segments& segments, const Predictions& predic
           segment.settled_echoes > options_.settled_fragment * static_cast<double>(segment.echoes.size());
       const bool inside =
           ((segment.low - whole.center).array() > -half).all() && ((segment.high - whole.center).array() < half).all();
-      if (inside && !settled && !verdicts[i].moves()) verdicts[i] = {Proof::kPartOfMoving, true};
+      if (inside && !settled && !verdicts[i].moves()) verdicts[i] = {Proof::kPartOfMoving, true, verdicts[i].object};
     }
   }
 }
@@ -171,10 +236,11 @@ void ObjectTracker::reset() {
   objects_.clear();
   traces_.reset();
   next_id_ = 1;
+  turn_ = 0;
 }
 
 std::size_t ObjectTracker::memoryBytes() const {
-  return tracks_.capacity() * sizeof(Track) + pairs_.capacity() * sizeof(Pair) + traces_.memoryBytes() +
+  return tracks_.capacity() * sizeof(Followed) + pairs_.capacity() * sizeof(Pair) + traces_.memoryBytes() +
          track_of_.capacity() * sizeof(int) + objects_.capacity() * sizeof(Object);
 }
 

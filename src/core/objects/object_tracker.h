@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "core/objects/motion_tests.h"
@@ -37,8 +38,8 @@ class ObjectTracker {
  public:
   explicit ObjectTracker(const ObjectConfig& config, const TrackerOptions& options = {});
 
-  /// Where the moving objects should be at `stamp` [s].
-  void predict(double stamp, Predictions& predictions) const;
+  /// Where the moving objects should be when the scan was taken, from what was known before its turn.
+  void predict(const JudgedScan& scan, Predictions& predictions) const;
 
   /// Follows the segments of a scan and decides about each. `predictions` are those for the scan; `now`: what the scan
   /// sees, asked in its points.
@@ -73,17 +74,35 @@ class ObjectTracker {
     double last_motion = kNever, last_moved_whole = kNever;
     Sign receding, advancing, shifting;
     bool dynamic = false, ever_dynamic = false;
-    bool is_found = false;   ///< in the present scan
     TraceHistory::Id trace;  ///< its last one
 
     Eigen::Vector3d centerAt(double stamp) const { return center + velocity * (stamp - last_seen); }
+  };
+  /// A track, and what it was before the turn in which it was seen last: each part of a turn that shows more of the
+  /// object is judged from there.
+  struct Followed {
+    Track now;
+    std::optional<Track> before;  ///< none where that was its first turn
+    std::uint32_t turn;           ///< in which it was seen last
+    bool is_found = false;        ///< in the present cloud
+    bool is_claimed = false;      ///< by a segment of the present cloud that goes on from an earlier part
   };
   struct Pair {
     double distance;
     std::size_t track, segment;
   };
 
+  static Track newTrack(std::uint32_t id, double stamp, const Segment& segment);
   void match(double stamp, const Segments& segments);
+  void claimParts(const Segments& segments);
+  void settleClaims();
+  double stepOf(const Track& track) const;
+  bool mayBeginWith(const Track& track, const Eigen::Vector3d& predicted, const Segment& segment) const;
+  /// Seen for the first time in this turn.
+  bool isNewcomer(const Followed& followed) const { return followed.turn == turn_ && !followed.before; }
+  const Track& beforeTurn(const Followed& followed) const {
+    return followed.turn == turn_ ? *followed.before : followed.now;
+  }
   Track& trackOf(std::size_t segment_index, double stamp, const Segment& segment);
   void follow(Track& track, double stamp, const Segment& segment) const;
   bool isBelieved(const Sign& sign, double stamp) const { return sign.seenFor(stamp) >= options_.believed_after; }
@@ -99,11 +118,13 @@ class ObjectTracker {
   MotionTestOptions test_options_;
   Eigen::Vector3d sensor_ = Eigen::Vector3d::Zero();  ///< of the present scan, odometry frame [m]
   TraceHistory traces_;
-  std::vector<Track> tracks_;
+  std::vector<Followed> tracks_;
   std::vector<Pair> pairs_;
+  std::vector<int> claim_of_;  ///< by segment: the track that it goes on with, or -1
   std::vector<int> track_of_;  ///< by segment, -1 where it is followed for the first time
   std::vector<Object> objects_;
   std::uint32_t next_id_ = 1;
+  std::uint32_t turn_ = 0;
 };
 
 }  // namespace donex

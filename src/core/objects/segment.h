@@ -28,6 +28,8 @@ struct Segment {
   float lowest_new = 0.0F, highest_new = 0.0F;  ///< the same of its new echoes
   Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();  ///< odometry frame [m]
   bool cut_out = false;  ///< cut from a larger cluster where a moving object was predicted
+  bool goes_on = false;  ///< has echoes of the turn before, where this one has not looked yet: more of it may come
+  std::uint32_t object = 0;  ///< that its echoes of earlier parts of the turn belong to; 0: none
 
   Eigen::Vector3d center() const { return 0.5 * (low + high); }
   Eigen::Vector3d extent() const { return high - low; }
@@ -74,6 +76,7 @@ class Segments {
 struct Verdict {
   Proof proof = Proof::kNone;
   bool moves_whole = false;  ///< the proof is about the whole segment, not about its new echoes alone
+  std::uint32_t object = 0;  ///< id of the object that the segment is followed as; 0: it is not
 
   bool moves() const { return proof != Proof::kNone; }
 };

@@ -40,7 +40,8 @@ void Segmenter::segment(const JudgedScan& scan, const Predictions& predictions, 
 void Segmenter::append(const JudgedScan& scan, Segments& segments) {
   const std::size_t first = segments.size();
   segment_of_.assign(static_cast<std::size_t>(clusters_.count()), kTooSmall);
-  for (int cluster = 0; cluster < clusters_.count(); ++cluster) {
+  const int of_this_part = clusters_.countWithin(scan.own());  // others were judged when their parts came
+  for (int cluster = 0; cluster < of_this_part; ++cluster) {
     if (clusters_.echoesIn(cluster) < static_cast<std::size_t>(config_.min_echoes)) continue;
     segment_of_[static_cast<std::size_t>(cluster)] = segments.size();
     segments.add(clusters_.echoesIn(cluster));

@@ -96,6 +96,7 @@ class SightHistory {
   TurnPart arrive(const Scan& scan, const std::vector<std::uint8_t>& is_echo);
   /// The directions of the cloud that arrived last, until it is added.
   const SightPixels& newest() const { return pixels_; }
+  const Turns& turns() const { return turns_; }
   /// Takes what the cloud saw that arrived last. Views made before are no longer valid.
   void add(const Scan& scan, const std::vector<std::uint8_t>& is_echo);
 

@@ -13,7 +13,8 @@ constexpr std::size_t kRepeated = 4;               // one in so many columns see
 }  // namespace
 
 TurnPart Turns::arrive(const Scan& scan, const SightPixels& seen) {
-  const Columns columns = columnsOf(seen);
+  newest_ = columnsOf(seen);
+  const Columns& columns = newest_;
   Sensor* sensor = sensorAt(scan.base_from_sensor);
   const bool is_long = sensors_.empty() || scan.stamp - begin_ > kLongest;
   const bool is_one_more = sensor == nullptr && sensors_.size() < kMostSensors;
@@ -31,9 +32,11 @@ TurnPart Turns::arrive(const Scan& scan, const SightPixels& seen) {
   }
   if (sensor == nullptr) {
     sensors_.push_back({scan.base_from_sensor, columns});
+    sensor = &sensors_.back();
   } else {
     for (std::size_t c = 0; c < kColumns; ++c) sensor->looked[c] = std::max(sensor->looked[c], columns[c]);
   }
+  newest_sensor_ = static_cast<std::size_t>(sensor - sensors_.data());
   const bool was_in_parts = clouds_ > 1;
   clouds_ = goes_on ? clouds_ + 1 : 1;
   if (goes_on) return TurnPart::kContinuing;

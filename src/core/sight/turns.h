@@ -26,6 +26,11 @@ class Turns {
   TurnPart arrive(const Scan& scan, const SightPixels& seen);
   /// Whether two mountings are one sensor's.
   static bool areOne(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b);
+  using Columns = std::array<std::uint8_t, SightPixels::kColumns>;  ///< 1 where they are looked at
+  /// What the newest cloud looks at; valid until the next one.
+  const Columns& newest() const { return newest_; }
+  /// What its sensor has looked at in the turn so far.
+  const Columns& lookedAt() const { return sensors_[newest_sensor_].looked; }
   /// The next cloud begins a turn, after none.
   void reset() {
     sensors_.clear();
@@ -38,7 +43,6 @@ class Turns {
   static constexpr std::size_t kMostSensors = 8;  ///< in a turn
 
  private:
-  using Columns = std::array<std::uint8_t, SightPixels::kColumns>;
   /// What a sensor has looked at in this turn.
   struct Sensor {
     Eigen::Isometry3d base_from_sensor;
@@ -51,6 +55,8 @@ class Turns {
   double begin_ = 0.0;      ///< [s]
   std::size_t clouds_ = 0;  ///< of the turn
   std::vector<Sensor> sensors_;
+  Columns newest_{};
+  std::size_t newest_sensor_ = 0;
 };
 
 }  // namespace donex

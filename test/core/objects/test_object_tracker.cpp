@@ -24,7 +24,7 @@ class Followed {
   std::size_t step(const JudgedScene& scene) {
     history_.arrive(scene.scan(), scene.judged.is_echo);
     history_.add(scene.scan(), scene.judged.is_echo);
-    tracker.predict(scene.judged.stamp, predictions_);
+    tracker.predict(scene.judged, predictions_);
     segmenter_.segment(scene.judged, predictions_, segments);
     tracker.update(scene.judged, segments, predictions_, history_.newestSeenFrom(scene.judged.odom_from_points),
                    verdicts);

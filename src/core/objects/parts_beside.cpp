@@ -1,0 +1,244 @@
+#include "core/objects/parts_beside.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace donex {
+namespace {
+
+constexpr int kColumns = SightPixels::kColumns;
+
+using ColumnSet = std::bitset<kColumns>;
+
+ColumnSet setOf(const Turns::Columns& columns) {
+  ColumnSet set;
+  for (std::size_t c = 0; c < columns.size(); ++c) set[c] = columns[c] != 0;
+  return set;
+}
+
+/// With those next to them, to both sides, so many times.
+ColumnSet grown(ColumnSet columns, int times) {
+  for (int i = 0; i < times; ++i) {
+    columns |= columns << 1 | columns >> (kColumns - 1) | columns >> 1 | columns << (kColumns - 1);
+  }
+  return columns;
+}
+
+ColumnSet shrunk(const ColumnSet& columns, int times) { return ~grown(~columns, times); }
+
+int columnsIn(float degrees) { return static_cast<int>(std::ceil(degrees * kColumns / 360.0F)); }
+
+void sortUnique(std::vector<std::uint32_t>& numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
+
+}  // namespace
+
+PartsBeside::PartsBeside(const PartsBesideOptions& options)
+    : reach_(columnsIn(options.reach)), border_(columnsIn(options.border)) {}
+
+void PartsBeside::join(TurnPart part, const Scan& scan, const SightPixels& pixels, const Turns& turns,
+                       JudgedScan& judged) {
+  judged.continues_turn = part == TurnPart::kContinuing;
+  if (!judged.continues_turn) beginTurn(part, judged);
+  if (!is_in_parts_) return;
+  const std::uint8_t sensor = sensorOf(scan);
+  near_ = grown(setOf(turns.newest()), reach_);
+  forgetWhatIsSeenAgain(sensor, turns);
+  findObjectsBeside(sensor);
+  keep(pixels, sensor, judged);
+  addBeside(sensor, judged);
+}
+
+void PartsBeside::beginTurn(TurnPart part, const JudgedScan& judged) {
+  is_in_parts_ = part != TurnPart::kWhole;
+  ++turn_;
+  forgetIf([&](const Cloud& cloud) { return !is_in_parts_ || cloud.turn + 1 != turn_; });
+  if (clouds_.empty()) mountings_.clear();
+  const Eigen::Isometry3f moved = (judged.odom_from_points.inverse() * odom_from_kept_).cast<float>();
+  for (Cloud& cloud : clouds_) {
+    for (Kept& kept : cloud.echoes) kept.point = moved * kept.point;
+  }
+  odom_from_kept_ = judged.odom_from_points;
+}
+
+template <class Condition>
+void PartsBeside::forgetIf(Condition&& condition) {
+  std::size_t stay = 0;
+  for (std::size_t i = 0; i < clouds_.size(); ++i) {
+    if (condition(clouds_[i])) {
+      spares_.push_back(std::move(clouds_[i]));
+    } else if (stay++ != i) {
+      clouds_[stay - 1] = std::move(clouds_[i]);
+    }
+  }
+  clouds_.resize(stay);
+}
+
+/// By the newest part, or of what the turn before saw by any. Parts may share a column at their border, or leave some
+/// between them.
+void PartsBeside::forgetWhatIsSeenAgain(std::uint8_t sensor, const Turns& turns) {
+  const ColumnSet seen_by_newest = shrunk(setOf(turns.newest()), 1);
+  const ColumnSet seen_by_turn = shrunk(grown(setOf(turns.lookedAt()), border_), border_ + 1);
+  for (Cloud& cloud : clouds_) {
+    const ColumnSet& seen = cloud.turn == turn_ ? seen_by_newest : seen_by_turn;
+    if (cloud.sensor != sensor || (cloud.columns & seen).none()) continue;
+    const auto is_seen_again = [&](const Kept& kept) { return seen[kept.column]; };
+    cloud.echoes.erase(std::remove_if(cloud.echoes.begin(), cloud.echoes.end(), is_seen_again), cloud.echoes.end());
+    cloud.columns &= ~seen;
+  }
+  forgetIf([](const Cloud& cloud) { return cloud.echoes.empty(); });
+}
+
+std::uint8_t PartsBeside::sensorOf(const Scan& scan) {
+  const auto known = std::find_if(mountings_.begin(), mountings_.end(), [&](const Eigen::Isometry3d& mounting) {
+    return Turns::areOne(mounting, scan.base_from_sensor);
+  });
+  const auto sensor = static_cast<std::uint8_t>(known - mountings_.begin());
+  if (known == mountings_.end()) mountings_.push_back(scan.base_from_sensor);
+  return sensor;
+}
+
+void PartsBeside::findObjectsBeside(std::uint8_t sensor) {
+  objects_beside_.clear();
+  for (const Cloud& cloud : clouds_) {
+    if (cloud.sensor != sensor || (cloud.columns & near_).none()) continue;
+    for (const Kept& kept : cloud.echoes) {
+      const bool is_known = !objects_beside_.empty() && objects_beside_.back() == kept.object;
+      if (kept.object != 0 && near_[kept.column] && !is_known) objects_beside_.push_back(kept.object);
+    }
+  }
+  sortUnique(objects_beside_);
+}
+
+void PartsBeside::keep(const SightPixels& pixels, std::uint8_t sensor, const JudgedScan& judged) {
+  Cloud cloud;
+  if (!spares_.empty()) {
+    cloud = std::move(spares_.back());
+    spares_.pop_back();
+  }
+  cloud.turn = turn_;
+  cloud.sensor = sensor;
+  cloud.is_judged = true;
+  cloud.columns.reset();
+  cloud.objects.clear();
+  cloud.echoes.clear();
+  if (judged.points.size() > cloud.echoes.capacity()) cloud.echoes.reserve(judged.points.size());
+  const Eigen::Isometry3f kept_from_points = (odom_from_kept_.inverse() * judged.odom_from_points).cast<float>();
+  kept_of_.assign(judged.points.size(), nullptr);
+  for (std::size_t i = 0; i < judged.points.size(); ++i) {
+    const ClusterRole role = judged.roles[i];
+    const bool takes_part = role == ClusterRole::kConnects || role == ClusterRole::kFollows;
+    if (!takes_part || pixels.row(i) < 0) continue;
+    const auto column = static_cast<std::uint16_t>(pixels.column(i));
+    cloud.columns.set(column);
+    cloud.echoes.push_back({kept_from_points * judged.points[i], judged.heights[i], 0, column, role, judged.places[i]});
+    kept_of_[i] = &cloud.echoes.back();  // stays there: there is room for all of them
+  }
+  clouds_.push_back(std::move(cloud));
+}
+
+void PartsBeside::addBeside(std::uint8_t sensor, JudgedScan& judged) {
+  const Eigen::Isometry3f points_from_kept = (judged.odom_from_points.inverse() * odom_from_kept_).cast<float>();
+  const auto is_of_one_beside = [&](std::uint32_t object) {
+    return object != 0 && std::binary_search(objects_beside_.begin(), objects_beside_.end(), object);
+  };
+  end_of_last_turn_ = judged.own();
+  for (std::size_t i = 0; i + 1 < clouds_.size(); ++i) {
+    Cloud& cloud = clouds_[i];
+    const bool may_be_near = (cloud.columns & near_).any();
+    const bool holds_any =
+        cloud.sensor == sensor &&
+        (may_be_near || std::any_of(cloud.objects.begin(), cloud.objects.end(), is_of_one_beside));
+    cloud.is_judged = holds_any;
+    if (!holds_any) continue;
+    for (Kept& kept : cloud.echoes) {
+      if (near_[kept.column] || is_of_one_beside(kept.object)) add(kept, points_from_kept, judged);
+    }
+    if (cloud.turn != turn_) end_of_last_turn_ = judged.points.size();
+  }
+}
+
+void PartsBeside::add(Kept& kept, const Eigen::Isometry3f& points_from_kept, JudgedScan& judged) {
+  judged.points.push_back(points_from_kept * kept.point);
+  judged.heights.push_back(kept.height);
+  judged.roles.push_back(kept.role);
+  judged.places.push_back(kept.place);
+  ++judged.beside;
+  kept_of_.push_back(&kept);
+}
+
+void PartsBeside::relate(const JudgedScan& judged, Segments& segments) {
+  if (!is_in_parts_) return;
+  for (Segment& segment : segments) {
+    segment.object = objectOf(segment, judged.own());
+    segment.goes_on = std::any_of(segment.echoes.begin(), segment.echoes.end(),
+                                  [&](std::uint32_t echo) { return echo >= judged.own() && echo < end_of_last_turn_; });
+  }
+}
+
+/// The one that most of its echoes beside belong to.
+std::uint32_t PartsBeside::objectOf(const Segment& segment, std::size_t own) {
+  counts_.clear();
+  for (const std::uint32_t echo : segment.echoes) {
+    const std::uint32_t object = echo < own ? 0 : kept_of_[echo]->object;
+    if (object == 0) continue;
+    const auto known =
+        std::find_if(counts_.begin(), counts_.end(), [&](const Count& count) { return count.object == object; });
+    known == counts_.end() ? counts_.push_back({object, 1}) : void(++known->echoes);
+  }
+  const auto most = std::max_element(counts_.begin(), counts_.end(),
+                                     [](const Count& a, const Count& b) { return a.echoes < b.echoes; });
+  return most == counts_.end() ? 0 : most->object;
+}
+
+void PartsBeside::listObjects(Cloud& cloud) {
+  cloud.objects.clear();
+  for (const Kept& kept : cloud.echoes) {
+    const bool is_known = !cloud.objects.empty() && cloud.objects.back() == kept.object;
+    if (kept.object != 0 && !is_known) cloud.objects.push_back(kept.object);
+  }
+  sortUnique(cloud.objects);
+}
+
+void PartsBeside::settle(const Segments& segments, const Verdicts& verdicts, JudgedScan& judged) {
+  if (!is_in_parts_) return;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    for (const std::uint32_t echo : segments[i].echoes) {
+      if (kept_of_[echo] != nullptr) kept_of_[echo]->object = verdicts[i].object;
+    }
+  }
+  for (Cloud& cloud : clouds_) {
+    if (cloud.is_judged) listObjects(cloud);
+  }
+  judged.points.resize(judged.own());
+  judged.heights.resize(judged.points.size());
+  judged.roles.resize(judged.points.size());
+  judged.places.resize(judged.points.size());
+  judged.beside = 0;
+}
+
+void PartsBeside::reset() {
+  forgetIf([](const Cloud&) { return true; });
+  mountings_.clear();
+  is_in_parts_ = false;
+}
+
+double PartsBeside::bytesFor(double echoes) {
+  return echoes * sizeof(Kept) + 2.0 * echoes * sizeof(Kept*);
+}
+
+std::size_t PartsBeside::memoryBytes() const {
+  std::size_t bytes = kept_of_.capacity() * sizeof(Kept*) + mountings_.capacity() * sizeof(Eigen::Isometry3d) +
+                      objects_beside_.capacity() * sizeof(std::uint32_t) + counts_.capacity() * sizeof(Count);
+  for (const auto* clouds : {&clouds_, &spares_}) {
+    bytes += clouds->capacity() * sizeof(Cloud);
+    for (const Cloud& cloud : *clouds) {
+      bytes += cloud.echoes.capacity() * sizeof(Kept) + cloud.objects.capacity() * sizeof(std::uint32_t);
+    }
+  }
+  return bytes;
+}
+
+}  // namespace donex

@@ -1,0 +1,133 @@
+// Scans that come in parts are labelled as whole scans are, and what a border cuts stays one object.
+#include <algorithm>
+#include <iostream>
+
+#include <gtest/gtest.h>
+
+#include "core/objects/parts_beside.h"
+#include "donex/memory_bound.h"
+#include "evaluation/scan_parts.h"
+#include "support/counted_allocations.h"
+#include "support/simulated_drive.h"
+
+namespace donex {
+namespace {
+
+using testing::Score;
+using testing::simulatedDrive;
+using testing::TrueScan;
+
+constexpr double kPeriod = 0.1;        // [s]
+constexpr std::size_t kWarmUp = 5;     // scans
+constexpr std::size_t kSettled = 15;   // scans; by then everything that moves has been seen to
+
+Config configOf(Method method) {
+  Config config;
+  config.method = method;
+  return config;
+}
+
+double iouOf(Method method, const std::vector<TrueScan>& drive, std::size_t count) {
+  const auto detector = makeDetector(configOf(method));
+  ScanParts parts(count);
+  Score score;
+  for (std::size_t k = 0; k < drive.size(); ++k) {
+    parts.cut(drive[k].scan, kPeriod);
+    EchoLabels whole, labels;
+    whole.assign(drive[k].scan.echoes.size());
+    for (std::size_t part = 0; part < count; ++part) {
+      detector->process(parts[part], labels);
+      parts.putBack(part, labels, whole);
+    }
+    if (k >= kWarmUp) score.add(drive[k], whole);
+  }
+  return score.iou();
+}
+
+class LabelsOfParts : public ::testing::TestWithParam<Method> {};
+
+TEST_P(LabelsOfParts, AreThoseOfWholeScansNearly) {
+  const std::vector<TrueScan> drive = simulatedDrive("street", 64, 25);
+  const double whole = iouOf(GetParam(), drive, 1);
+  std::cout << "whole: moving IoU " << whole << '\n';
+  for (const std::size_t count : {4U, 40U}) {
+    const double in_parts = iouOf(GetParam(), drive, count);
+    std::cout << count << " parts: moving IoU " << in_parts << '\n';
+    EXPECT_GT(in_parts, whole - 0.02) << count << " parts";
+  }
+}
+
+/// The vehicle ahead, which the border between the last part of a turn and the first one cuts in two.
+const Object* vehicleAhead(const Detector& detector, const Scan& scan) {
+  const Object* ahead = nullptr;
+  for (const Object& object : detector.objects()) {
+    const Eigen::Vector3d from_vehicle = scan.odom_from_base.inverse() * object.odom_from_box.translation();
+    const bool is_ahead = from_vehicle.x() > 3.0 && from_vehicle.x() < 40.0 && std::abs(from_vehicle.y()) < 1.2;
+    const bool is_largest = ahead == nullptr || object.echoes > ahead->echoes;
+    if (is_ahead && object.dynamic && is_largest) ahead = &object;
+  }
+  return ahead;
+}
+
+TEST_P(LabelsOfParts, AVehicleThatABorderCutsKeepsOneNumberAndOneBox) {
+  const std::vector<TrueScan> drive = simulatedDrive("lead_vehicle", 64, 35);
+  for (const std::size_t count : {10U}) {
+    const auto detector = makeDetector(configOf(GetParam()));
+    ScanParts parts(count);
+    std::uint32_t id = 0;
+    int seen = 0;
+    EchoLabels labels;
+    for (std::size_t k = 0; k < drive.size(); ++k) {
+      parts.cut(drive[k].scan, kPeriod);
+      for (std::size_t part = 0; part < count; ++part) {
+        detector->process(parts[part], labels);
+        const bool is_cut_there = part == 0 || part + 1 == count;
+        const Object* object = k < kSettled || !is_cut_there ? nullptr : vehicleAhead(*detector, parts[part]);
+        if (object == nullptr) continue;
+        id = seen++ == 0 ? object->id : id;
+        EXPECT_EQ(object->id, id) << "scan " << k << ", part " << part << " of " << count;
+        EXPECT_GT(object->size.y(), 1.4) << "both halves are in the box: scan " << k << ", part " << part;
+      }
+    }
+    EXPECT_GE(seen, 2 * static_cast<int>(drive.size() - kSettled) - 4) << count << " parts";
+  }
+}
+
+TEST_P(LabelsOfParts, HardlyAllocateAndTakeNoMoreThanWasSaid) {
+  const std::vector<TrueScan> drive = simulatedDrive("intersection", 64, 26);
+  const std::size_t count = 10;
+  ScanParts parts(count);
+  std::vector<Scan> clouds;
+  std::size_t most = 0;
+  for (const TrueScan& scan : drive) {
+    most = std::max(most, scan.scan.echoes.size());
+    parts.cut(scan.scan, kPeriod);
+    for (std::size_t part = 0; part < count; ++part) clouds.push_back(parts[part]);
+  }
+  EchoLabels labels;
+  labels.resize(most);
+  const std::size_t bytes_before = testing::liveBytes();
+  const auto detector = makeDetector(configOf(GetParam()));
+  for (const Scan& cloud : clouds) detector->process(cloud, labels);
+  const auto taken = static_cast<double>(testing::liveBytes() - bytes_before);
+  EXPECT_LT(taken, 1.1 * memoryBound(configOf(GetParam()), most) + PartsBeside::bytesFor(static_cast<double>(most)));
+  EXPECT_NEAR(static_cast<double>(detector->memoryBytes()), taken, 0.1 * taken);
+
+  std::size_t allocations = 0, dynamic = 0;
+  for (int drives = 0; drives < 4; ++drives) {
+    detector->reset();
+    allocations = testing::allocations();
+    for (const Scan& cloud : clouds) {
+      detector->process(cloud, labels);
+      dynamic += static_cast<std::size_t>(std::count(labels.dynamic.begin(), labels.dynamic.end(), 1));
+    }
+  }
+  // Traces of parts take turns with storage of different sizes: now and then one of them grows.
+  EXPECT_LE(testing::allocations() - allocations, clouds.size() / 20);
+  EXPECT_GT(dynamic, 1000U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Grids, LabelsOfParts, ::testing::Values(Method::kDonex3d, Method::kDonex2d));
+
+}  // namespace
+}  // namespace donex
