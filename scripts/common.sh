@@ -37,6 +37,8 @@ cmake_arguments=(
   -DCMAKE_CXX_COMPILER_LAUNCHER=ccache
   -DPYTHON_EXECUTABLE=/usr/bin/python3
   -DPython3_EXECUTABLE=/usr/bin/python3)
+# Debian 11's catkin asks cmake-extras for GMock when a workspace is configured first; when it is again, the targets are lost.
+if grep -qs '^VERSION_ID="11"' /etc/os-release; then cmake_arguments+=(-DCMAKE_DISABLE_FIND_PACKAGE_GMock=ON); fi
 
 say() { printf '\n== %s\n' "$*"; }
 
