@@ -282,7 +282,7 @@ void Pipeline::suspectOrigin(const ScanMotion& motion, const std::string& cloud_
 }
 
 void Pipeline::watchFlood() {
-  const double share = flood_.follow(labels_);
+  const double share = flood_.follow(scan_.stamp, labels_);
   if (!(share > 0.0)) return;
   ++counts_.floods;
   if (!events_.flooded) return;

@@ -17,9 +17,9 @@ using testing::Score;
 using testing::simulatedDrive;
 using testing::TrueScan;
 
-constexpr double kPeriod = 0.1;        // [s]
-constexpr std::size_t kWarmUp = 5;     // scans
-constexpr std::size_t kSettled = 15;   // scans; by then everything that moves has been seen to
+constexpr double kPeriod = 0.1;       // [s]
+constexpr std::size_t kWarmUp = 5;    // scans
+constexpr std::size_t kSettled = 15;  // scans; by then everything that moves has been seen to
 
 Config configOf(Method method) {
   Config config;

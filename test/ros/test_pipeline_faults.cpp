@@ -329,16 +329,37 @@ EchoLabels labelsWith(std::size_t dynamic) {
 
 TEST(FloodWatch, TellsASuddenFloodOnce) {
   FloodWatch watch;
-  for (int i = 0; i < 20; ++i) EXPECT_EQ(watch.follow(labelsWith(20)), 0.0) << i;
-  EXPECT_EQ(watch.follow(labelsWith(400)), 0.0) << "one scan";
-  EXPECT_EQ(watch.follow(labelsWith(400)), 0.4) << "two";
-  for (int i = 0; i < 20; ++i) EXPECT_EQ(watch.follow(labelsWith(400)), 0.0) << i;
+  int scan = 0;
+  const auto follow = [&](std::size_t dynamic) { return watch.follow(100.0 + 0.1 * scan++, labelsWith(dynamic)); };
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(follow(20), 0.0) << i;
+  EXPECT_EQ(follow(400), 0.0) << "one scan";
+  EXPECT_EQ(follow(400), 0.4) << "two";
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(follow(400), 0.0) << i;
 }
 
 TEST(FloodWatch, IsNoCrowdAndNoStart) {
   FloodWatch crowd, start;
-  for (int i = 0; i < 40; ++i) EXPECT_EQ(crowd.follow(labelsWith(static_cast<std::size_t>(10 * i))), 0.0) << i;
-  for (int i = 0; i < 40; ++i) EXPECT_EQ(start.follow(labelsWith(400)), 0.0) << i;
+  for (int i = 0; i < 40; ++i) {
+    EXPECT_EQ(crowd.follow(0.1 * i, labelsWith(static_cast<std::size_t>(10 * i))), 0.0) << i;
+    EXPECT_EQ(start.follow(0.1 * i, labelsWith(400)), 0.0) << i;
+  }
+}
+
+TEST(FloodWatch, LooksAtPartsOfATurnTogether) {
+  FloodWatch watch;
+  double share = 0.0;
+  const auto turn = [&](int number, std::size_t dynamic, std::size_t in_one_part) {
+    for (int part = 0; part < 10; ++part) {
+      const std::size_t more = part == 4 ? in_one_part : 0;
+      share = std::max(share, watch.follow(0.1 * number + 0.01 * part, labelsWith(dynamic + more)));
+    }
+  };
+  for (int i = 0; i < 20; ++i) turn(i, 10, 0);
+  for (int i = 20; i < 30; ++i) turn(i, 10, 800);
+  EXPECT_EQ(share, 0.0) << "a lorry fills one part";
+  for (int i = 30; i < 40; ++i) turn(i, 10, 0);
+  for (int i = 40; i < 43; ++i) turn(i, 500, 0);
+  EXPECT_NEAR(share, 0.5, 0.06) << "everywhere at once";
 }
 
 TEST(PipelineFaults, WhatStandsAndIsDynamicAtOnceIsSaid) {

@@ -246,7 +246,7 @@ class EvidenceDetector : public Detector {
   Predictions predictions_;
   Segments segments_;
   Verdicts verdicts_;
-  std::vector<Proof> proofs_;  ///< per echo
+  std::vector<Proof> proofs_;               ///< per echo
   GroundCount ground_now_, ground_before_;  ///< of this turn, and of the turn before
   bool lacks_ground_ = false;
 };

@@ -148,9 +148,8 @@ void PartsBeside::addBeside(std::uint8_t sensor, JudgedScan& judged) {
   for (std::size_t i = 0; i + 1 < clouds_.size(); ++i) {
     Cloud& cloud = clouds_[i];
     const bool may_be_near = (cloud.columns & near_).any();
-    const bool holds_any =
-        cloud.sensor == sensor &&
-        (may_be_near || std::any_of(cloud.objects.begin(), cloud.objects.end(), is_of_one_beside));
+    const bool holds_any = cloud.sensor == sensor &&
+                           (may_be_near || std::any_of(cloud.objects.begin(), cloud.objects.end(), is_of_one_beside));
     cloud.is_judged = holds_any;
     if (!holds_any) continue;
     for (Kept& kept : cloud.echoes) {
@@ -225,9 +224,7 @@ void PartsBeside::reset() {
   is_in_parts_ = false;
 }
 
-double PartsBeside::bytesFor(double echoes) {
-  return echoes * sizeof(Kept) + 2.0 * echoes * sizeof(Kept*);
-}
+double PartsBeside::bytesFor(double echoes) { return echoes * sizeof(Kept) + 2.0 * echoes * sizeof(Kept*); }
 
 std::size_t PartsBeside::memoryBytes() const {
   std::size_t bytes = kept_of_.capacity() * sizeof(Kept*) + mountings_.capacity() * sizeof(Eigen::Isometry3d) +
