@@ -27,8 +27,8 @@ constexpr double kLogPeriod = 5.0;     // between messages of one kind [s]
 constexpr double kCheckPeriod = 30.0;  // the same of odometry that disagrees with the scans [s]
 constexpr double kRetryPeriod = 0.01;  // waiting clouds are asked about this often at least [s]
 
-/// Between subscriptions to tf while a transform is missing [s].
-constexpr double kTfRenewal = 5.0;
+/// Between subscriptions to a topic anew, while what it sends is missing or cannot be read [s].
+constexpr double kRenewal = 5.0;
 
 /// A queue of roscpp's that is full drops silently. Ours takes whatever comes while one scan is judged; after that scan
 /// the callbacks, which only enqueue, hand all of it to the pipeline, which bounds and counts.
@@ -66,6 +66,8 @@ class DonexNode::Implementation {
   void checkOdometry(const LabeledScan& scan);
   void listenToTf();
   void renewTf();
+  void listenToClouds();
+  void renewClouds();
 
   /// An exception out of a callback would end the whole manager.
   template <class Function>
@@ -79,6 +81,8 @@ class DonexNode::Implementation {
   tf2_ros::Buffer tf_;
   std::unique_ptr<tf2_ros::TransformListener> tf_listener_;
   ros::WallTime listening_since_;
+  ros::WallTime clouds_since_;  // when the clouds were subscribed to, or could be read last
+  bool cannot_be_read_ = false;  // none of the clouds since then
   Pipeline pipeline_;
   Diagnostics diagnostics_;
   ScanPublisher publisher_;
@@ -111,9 +115,7 @@ DonexNode::Implementation::Implementation(const ros::NodeHandle& nh, const ros::
   reset_service_ = pnh_.advertiseService("reset", &Implementation::onReset, this);
   reconfigure_ = std::make_unique<Reconfigure>(pnh_, config_, [this](const Config& config) { onChange(config); });
 
-  const CloudReceiver receiver{[this](const sensor_msgs::PointCloud2ConstPtr& cloud) { onCloud(cloud); },
-                               [this](const std::string& why) { onUnreadable(why); }};
-  cloud_subscriber_ = subscribeToClouds(nh_, "points", kUnbounded, receiver);
+  listenToClouds();
   const auto hints = ros::TransportHints().tcpNoDelay();
   odometry_subscriber_ = nh_.subscribe("odom", kUnbounded, &Implementation::onOdometry, this, hints);
   retry_timer_ = nh_.createWallTimer(ros::WallDuration(kRetryPeriod), [this](const ros::WallTimerEvent&) {
@@ -121,6 +123,7 @@ DonexNode::Implementation::Implementation(const ros::NodeHandle& nh, const ros::
   });
   diagnostics_timer_ = nh_.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) {
     guarded("diagnostics", [this] { diagnostics_.publish(); });
+    renewClouds();
   });
 }
 
@@ -143,10 +146,27 @@ void DonexNode::Implementation::listenToTf() {
 
 /// /tf_static is sent once to each subscriber; whoever missed it would wait for ever.
 void DonexNode::Implementation::renewTf() {
-  const bool is_due = tf_listener_ && (ros::WallTime::now() - listening_since_).toSec() >= kTfRenewal;
+  const bool is_due = tf_listener_ && (ros::WallTime::now() - listening_since_).toSec() >= kRenewal;
   if (!is_due) return;
   ROS_WARN_STREAM_NAMED("donex", "a transform is missing: subscribing to tf anew");
   listenToTf();
+}
+
+void DonexNode::Implementation::listenToClouds() {
+  const CloudReceiver receiver{[this](const sensor_msgs::PointCloud2ConstPtr& cloud) { onCloud(cloud); },
+                               [this](const std::string& why) { onUnreadable(why); }};
+  cloud_subscriber_.shutdown();  // first, as for tf
+  cloud_subscriber_ = subscribeToClouds(nh_, "points", kUnbounded, receiver);
+  clouds_since_ = ros::WallTime::now();
+  cannot_be_read_ = false;
+}
+
+/// A subscription keeps to the definition of its first publisher, and refuses those with the right one.
+void DonexNode::Implementation::renewClouds() {
+  const bool is_due = cannot_be_read_ && (ros::WallTime::now() - clouds_since_).toSec() >= kRenewal;
+  if (!is_due) return;
+  ROS_WARN_STREAM_NAMED("donex", "no cloud can be read: subscribing to " << cloud_subscriber_.getTopic() << " anew");
+  listenToClouds();
 }
 
 template <class Function>
@@ -162,6 +182,8 @@ void DonexNode::Implementation::guarded(const char* where, Function&& function) 
 
 void DonexNode::Implementation::onCloud(const sensor_msgs::PointCloud2ConstPtr& cloud) {
   guarded("cloud", [&] {
+    clouds_since_ = ros::WallTime::now();
+    cannot_be_read_ = false;
     diagnostics_.cloudArrived(cloud->header.stamp);
     pipeline_.addCloud(cloud, ros::Time::now().toSec());
     schedule();
@@ -169,6 +191,7 @@ void DonexNode::Implementation::onCloud(const sensor_msgs::PointCloud2ConstPtr& 
 }
 
 void DonexNode::Implementation::onUnreadable(const std::string& why) {
+  cannot_be_read_ = true;
   guarded("cloud", [&] { pipeline_.refuseCloud("topic " + cloud_subscriber_.getTopic() + ": " + why); });
 }
 
