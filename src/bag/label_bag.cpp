@@ -51,6 +51,7 @@ class Labeler {
  private:
   PipelineEvents events();
   void take(const LabeledScan& scan);
+  std::size_t scansBefore(double stamp);
   void remark(const std::string& kind, const std::string& text);
   void addTransforms(const rosbag::MessageInstance& message, bool are_static);
   void feed(const rosbag::MessageInstance& message);
@@ -60,6 +61,7 @@ class Labeler {
   std::set<std::string> remarked_;
   ros::Time now_;
   std::size_t part_ = 0;
+  double first_stamp_ = 0.0;  // [s]
   std::exception_ptr sink_fault_;
   struct Mounting {
     Eigen::Isometry3d base_from_sensor = Eigen::Isometry3d::Identity();
@@ -110,13 +112,21 @@ void Labeler::take(const LabeledScan& scan) {
   }
   const auto truth = truthOf(*scan.cloud, scan.layout);
   if (!truth.empty()) {
-    summary_.evaluation.add(summary_.times.size() - 1, scan.scan.echoes, truth, asSemanticKitti(scan.labels));
+    summary_.evaluation.add(scansBefore(scan.scan.stamp), scan.scan.echoes, truth, asSemanticKitti(scan.labels));
   }
   try {
     if (!sink_fault_) sink_(scan, now_, part_);
   } catch (...) {
     sink_fault_ = std::current_exception();
   }
+}
+
+/// Whole scans at 10 Hz, for the warm-up: parts of turns, and clouds of several sensors, are as many as their time says.
+std::size_t Labeler::scansBefore(double stamp) {
+  constexpr double kScan = 0.1, kJitter = 0.05;  // [s], and of a scan
+  if (summary_.times.size() == 1) first_stamp_ = stamp;
+  const double scans = std::max(0.0, (stamp - first_stamp_) / kScan + kJitter);
+  return std::min(summary_.times.size() - 1, static_cast<std::size_t>(scans));
 }
 
 void Labeler::addTransforms(const rosbag::MessageInstance& message, bool are_static) {

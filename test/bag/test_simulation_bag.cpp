@@ -172,7 +172,8 @@ TEST(SimulationBag, HoldsPartsWithoutDistortionOneAfterTheOther) {
     if (message.topic != "/points") continue;
     EXPECT_NEAR(message.time.toSec(), 5.1 + 0.01 * static_cast<double>(part++), 1e-6);
   }
-  expectLabelledWholly(directory, file, clouds.size());
+  const LabelBagSummary summary = expectLabelledWholly(directory, file, clouds.size());
+  EXPECT_EQ(summary.evaluation.scans(), 50U) << "half a second is not scored, as with whole scans";
 }
 
 }  // namespace
