@@ -127,8 +127,8 @@ void ObjectTracker::settleClaims() {
       track_of_[c] = claim_of_[c];
     } else if (isNewcomer(claimed)) {
       claimed.now.last_seen = kNever;  // what it was taken for is another track
-    } else {
-      claimed.now = *claimed.before;
+    } else if (claimed.turn == turn_) {
+      claimed.now = *claimed.before;  // as if it had not been seen in this turn
       claimed.turn = turn_ - 1;
     }
   }

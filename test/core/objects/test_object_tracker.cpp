@@ -20,12 +20,13 @@ class Followed {
  public:
   explicit Followed(const ObjectConfig& config = {}) : segmenter_(60.0, config), tracker(config) {}
 
-  /// Number of the scan's echoes that move.
-  std::size_t step(const JudgedScene& scene) {
+  /// Number of the scan's echoes that move. `goes_on_with`: the object that the first segment's echoes beside belong to.
+  std::size_t step(const JudgedScene& scene, std::uint32_t goes_on_with = 0) {
     history_.arrive(scene.scan(), scene.judged.is_echo);
     history_.add(scene.scan(), scene.judged.is_echo);
     tracker.predict(scene.judged, predictions_);
     segmenter_.segment(scene.judged, predictions_, segments);
+    if (goes_on_with != 0) segments[0].object = goes_on_with;
     tracker.update(scene.judged, segments, predictions_, history_.newestSeenFrom(scene.judged.odom_from_points),
                    verdicts);
     std::size_t moving = 0;
@@ -87,6 +88,44 @@ TEST(ObjectTracker, TwoThatPassEachOtherKeepTheirNumbers) {
     }
   }
   EXPECT_NE(ids[0], ids[1]);
+}
+
+TEST(ObjectTracker, APartThatFitsAnotherTrackLeavesItsOwn) {
+  Followed followed;
+  JudgedScene first(0.0);
+  addVehicle(first, 5.0, 2.0, Place::kNew);
+  addVehicle(first, 5.0, 8.0, Place::kNew);
+  followed.step(first);
+  ASSERT_EQ(followed.verdicts.size(), 2U);
+  const std::uint32_t other = followed.verdicts[0].object, own = followed.verdicts[1].object;
+  // Seen once so far, and said to go on where the second vehicle is.
+  JudgedScene second(0.1);
+  addVehicle(second, 5.2, 8.0, Place::kNew);
+  followed.step(second, other);
+  ASSERT_EQ(followed.verdicts.size(), 1U);
+  EXPECT_EQ(followed.verdicts[0].object, own);
+  JudgedScene third(0.2);
+  addVehicle(third, 5.4, 2.0, Place::kNew);
+  followed.step(third);
+  EXPECT_EQ(followed.verdicts[0].object, other) << "it is followed still";
+}
+
+TEST(ObjectTracker, WithMoreOfItInViewATurnIsJudgedAnew) {
+  Followed followed;
+  JudgedScene before(0.0);
+  addVehicle(before, 5.0, 2.0, Place::kNew);
+  followed.step(before);
+  const std::uint32_t id = followed.verdicts[0].object;
+  JudgedScene half(0.1);
+  half.face({5.8, 2.0, 0.3}, {2.0, 0.0, 0.0}, 1.2, Place::kNew, 0.05);
+  followed.step(half);
+  JudgedScene whole(0.11);
+  whole.judged.continues_turn = true;
+  addVehicle(whole, 5.8, 2.0, Place::kNew);
+  followed.step(whole, id);
+  ASSERT_EQ(followed.tracker.objects().size(), 1U);
+  EXPECT_EQ(followed.tracker.objects()[0].id, id);
+  EXPECT_NEAR(followed.tracker.objects()[0].velocity.x(), 0.8 / 0.11, 0.3) << "since the turn before, not since the half";
 }
 
 TEST(ObjectTracker, AVehicleAheadAtTheSameSpeedIsFoundByItsRear) {
