@@ -84,7 +84,7 @@ void DriveRun::followPoses(const Scan& scan) {
 void DriveRun::complete(Scan& scan, std::size_t index) {
   if (index == completed_poses_.size()) {
     const double start = cpuTime();
-    completed_poses_.push_back(completion_->complete(scan.echoes, scan.base_from_sensor, scan.odom_from_base));
+    completed_poses_.push_back(completion_->complete(scan.stamp, scan.echoes, scan.base_from_sensor, scan.odom_from_base));
     if (completion_->isActive()) {
       ++completed_;
       odometry_times_.push_back(cpuTime() - start);

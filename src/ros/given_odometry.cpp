@@ -30,7 +30,7 @@ bool GivenOdometry::complete(Scan& scan, const ScanMotion& motion, OdometrySourc
   learns_ = completes_ && !is_registered && isGiven(motion, source);
   if (!learns_) return false;
   const Eigen::Isometry3d given = scan.odom_from_base;
-  scan.odom_from_base = completion_.complete(scan.echoes, scan.base_from_sensor, given);
+  scan.odom_from_base = completion_.complete(scan.stamp, scan.echoes, scan.base_from_sensor, given);
   odom_from_world_ = given * scan.odom_from_base.inverse();
   return completion_.isActive();
 }

@@ -41,7 +41,7 @@ void LidarOdometry::reset() {
   step_time_ = 0.0;
   squared_error_ = options_.first_gate * options_.first_gate / 9.0;
   usual_fitting_ = 0.0;
-  lost_ = 0;
+  lost_since_.reset();
   has_track_ = is_anchored_ = false;
   determined_at_ = 0.0;
   to_keep_.clear();
@@ -97,7 +97,7 @@ Eigen::Isometry3d LidarOdometry::predicted(double stamp) const {
 Registration LidarOdometry::registered(const Eigen::Isometry3d& prediction, double elapsed) {
   const double gate = std::min(std::max(3.0 * std::sqrt(squared_error_), options_.least_gate), options_.first_gate);
   const Registration first = registration_.align(map_, source_, prediction, gate);
-  const bool has_velocity = step_time_ > 0.0 && lost_ == 0;
+  const bool has_velocity = step_time_ > 0.0 && !lost_since_;
   if (has_velocity && isUsual(first) && isSound(first, prediction, elapsed)) return first;
   const double reach =
       has_velocity ? options_.search_step : std::min(options_.search_reach, options_.search_speed * elapsed);
@@ -202,7 +202,7 @@ void LidarOdometry::accept(const Registration& registration, const Eigen::Isomet
   last_.status = registration.undetermined > 0 ? TrackingStatus::kDegenerate
                  : knew_velocity               ? TrackingStatus::kTracking
                                                : TrackingStatus::kStarting;
-  lost_ = 0;
+  lost_since_.reset();
   const bool is_open = registration.undetermined > 0;
   if (!is_open) determined_at_ = stamp;
   is_anchored_ = !is_open || (is_anchored_ && stamp - determined_at_ < options_.longest_prediction);
@@ -224,14 +224,15 @@ void LidarOdometry::adaptGate(const Eigen::Isometry3d& prediction) {
 
 void LidarOdometry::lose(const Eigen::Isometry3d& prediction, double stamp) {
   const bool may_start = source_.size() >= options_.least_echoes;
-  if (++lost_ > options_.most_lost && may_start) return startTrack(stamp, prediction);
+  if (!lost_since_) lost_since_ = stamp;
+  if (stamp - *lost_since_ >= options_.new_track_after && may_start) return startTrack(stamp, prediction);
   last_.odom_from_sensor = prediction;
   last_.status = TrackingStatus::kLost;
   last_.is_new_track = false;
   last_.undetermined = 6;
   last_.fitting = last_.least_information = 0.0;
   last_stamp_ = std::max(last_stamp_, stamp);
-  if (lost_ * step_time_ > options_.longest_prediction) step_.setIdentity();
+  if (stamp - *lost_since_ + step_time_ > options_.longest_prediction) step_.setIdentity();
 }
 
 void LidarOdometry::learn(const std::vector<std::uint8_t>& dynamic) { selection_.leaveOutMoving(dynamic, to_keep_); }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -57,7 +58,7 @@ class LidarOdometry {
     double least_matched = 0.1;       ///< a smaller share of echoes on known surfaces is a loss
     double most_acceleration = 40.0;  ///< no vehicle brakes or turns in as hard: a loss [m/s^2]
     double most_turn = 0.35;          ///< nor turns by so much more than predicted between two scans [rad]
-    int most_lost = 5;                ///< scans; after that a new track begins
+    double new_track_after = 0.45;    ///< a loss lasts so long: a new track begins [s]
     double longest_prediction = 1.0;  ///< then a vehicle is taken to stand [s]
   };
 
@@ -99,9 +100,9 @@ class LidarOdometry {
   Eigen::Isometry3d step_ = Eigen::Isometry3d::Identity();  // the last motion between two scans, in sensor axes
   double step_time_ = 0.0;                                  // [s]; 0 where none is known
   double last_stamp_ = 0.0;
-  double squared_error_ = 0.0;  // of predictions, fading [m^2]
-  double usual_fitting_ = 0.0;  // share of fitting echoes, fading
-  int lost_ = 0;                // scans in a row
+  double squared_error_ = 0.0;        // of predictions, fading [m^2]
+  double usual_fitting_ = 0.0;        // share of fitting echoes, fading
+  std::optional<double> lost_since_;  // stamp of the first scan in a row [s]
   bool has_track_ = false;
   bool is_anchored_ = false;    // the velocity was found in scans that leave no doubt of it
   double determined_at_ = 0.0;  // stamp of the newest scan that left nothing open [s]

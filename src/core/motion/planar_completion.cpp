@@ -51,10 +51,10 @@ void PlanarCompletion::reset() {
 void PlanarCompletion::begin() {
   if (map_) map_->clear();
   has_map_ = false;
-  predicted_ = 0;
+  predicted_since_.reset();
 }
 
-Eigen::Isometry3d PlanarCompletion::complete(const std::vector<Eigen::Vector3f>& echoes,
+Eigen::Isometry3d PlanarCompletion::complete(double stamp, const std::vector<Eigen::Vector3f>& echoes,
                                              const Eigen::Isometry3d& base_from_sensor,
                                              const Eigen::Isometry3d& odom_from_base) {
   plane_.follow(odom_from_base);
@@ -69,7 +69,7 @@ Eigen::Isometry3d PlanarCompletion::complete(const std::vector<Eigen::Vector3f>&
   given_ = odom_from_base;
   map_->moveTo(completed().translation());
   const bool is_scan = source_.size() >= options_.least_echoes;
-  if (has_map_ && is_scan) find();
+  if (has_map_ && is_scan) find(stamp);
   has_map_ = has_map_ || is_scan;
   const Eigen::Isometry3d pose = completed();
   completed_from_given_ = pose * odom_from_base.inverse();
@@ -82,12 +82,15 @@ void PlanarCompletion::climb(const Eigen::Isometry3d& odom_from_base) {
   lift_ += (rotationBy(tilt_) * way - way).z();
 }
 
-void PlanarCompletion::find() {
+void PlanarCompletion::find(double stamp) {
   const Eigen::Isometry3d prediction = completed();
   const Registration registration = registration_.align(*map_, source_, prediction, options_.gate);
   if (isSound(registration, prediction)) {
     take(registration.map_from_sensor);
-  } else if (++predicted_ > options_.most_predicted) {
+    return;
+  }
+  if (!predicted_since_) predicted_since_ = stamp;
+  if (stamp - *predicted_since_ >= options_.new_map_after) {
     begin();  // with this scan
   } else {
     to_keep_.clear();
@@ -125,7 +128,7 @@ void PlanarCompletion::take(const Eigen::Isometry3d& found) {
   tilt_ = rotationVectorOf(found.linear() * given_.linear().transpose());
   tilt_.z() = 0.0;  // yaw stays as given
   lift_ = found.translation().z() - given_.translation().z();
-  predicted_ = 0;
+  predicted_since_.reset();
 }
 
 void PlanarCompletion::learn(const std::vector<std::uint8_t>& dynamic) {

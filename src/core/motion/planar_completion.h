@@ -54,16 +54,16 @@ class PlanarCompletion {
     double least_fitting = 0.4;           ///< with a smaller share of these that fit, too
     double most_lift = 0.3;               ///< no vehicle is so much higher than predicted, from scan to scan [m]
     double most_tilt = 0.1;               ///< nor tilted by so much more [rad]
-    int most_predicted = 5;               ///< scans in a row that do not fit; then a new map begins
+    double new_map_after = 0.45;          ///< scans do not fit for so long: a new map begins [s]
   };
 
   PlanarCompletion() : PlanarCompletion(Options()) {}
   explicit PlanarCompletion(const Options& options);
 
-  /// The vehicle's pose at a scan. `echoes` in the sensor frame [m], `odom_from_base` as the odometry has it. Once the
-  /// odometry leaves its plane, what it lacked until then stays added: poses never step.
-  Eigen::Isometry3d complete(const std::vector<Eigen::Vector3f>& echoes, const Eigen::Isometry3d& base_from_sensor,
-                             const Eigen::Isometry3d& odom_from_base);
+  /// The vehicle's pose at a scan of this stamp [s]. `echoes` in the sensor frame [m], `odom_from_base` as the odometry
+  /// has it. Once the odometry leaves its plane, what it lacked until then stays added: poses never step.
+  Eigen::Isometry3d complete(double stamp, const std::vector<Eigen::Vector3f>& echoes,
+                             const Eigen::Isometry3d& base_from_sensor, const Eigen::Isometry3d& odom_from_base);
 
   /// What moves in that scan, 1 for each echo that does: the rest goes into the map, now or with the next scan.
   void learn(const std::vector<std::uint8_t>& dynamic);
@@ -79,7 +79,7 @@ class PlanarCompletion {
   void select(const std::vector<Eigen::Vector3f>& echoes, const Eigen::Isometry3d& base_from_sensor);
   bool isSound(const Registration& registration, const Eigen::Isometry3d& prediction) const;
   void climb(const Eigen::Isometry3d& odom_from_base);
-  void find();
+  void find(double stamp);
   void take(const Eigen::Isometry3d& found);
   Eigen::Isometry3d completed() const;
   void keep();
@@ -93,7 +93,7 @@ class PlanarCompletion {
   Eigen::Vector3d tilt_ = Eigen::Vector3d::Zero();  // axis times angle [rad], along the ground
   double lift_ = 0.0;                               // [m]
   bool has_map_ = false;
-  int predicted_ = 0;  // scans in a row
+  std::optional<double> predicted_since_;  // stamp of the first scan in a row that does not fit [s]
   Eigen::Isometry3d completed_from_given_ = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d given_ = Eigen::Isometry3d::Identity();  // of the newest scan
   // Of the scan in hand, in the vehicle's frame.

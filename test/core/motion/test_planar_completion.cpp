@@ -47,7 +47,7 @@ TEST(PlanarCompletion, FindsHeightRollAndPitchToTheSolversLastStep) {
   PlanarCompletion completion;
   for (int i = 0; i < 12; ++i) {
     const auto echoes = seenFrom(truePose(i) * mounting(), world);
-    const Eigen::Isometry3d pose = completion.complete(echoes, mounting(), planarPose(i));
+    const Eigen::Isometry3d pose = completion.complete(0.1 * i, echoes, mounting(), planarPose(i));
     EXPECT_EQ(completion.isActive(), i > 1) << "half a metre has to show that it is planar; scan " << i;
     EXPECT_LT(distanceBetween(pose, truePose(i)), 3e-4) << i;
     EXPECT_LT(rotationBetween(pose, truePose(i)), 4e-4) << i;  // yaw is kept, in which tilts show squared
@@ -62,7 +62,7 @@ TEST(PlanarCompletion, KeepsPlaceAndYawAsGiven) {
     Eigen::Isometry3d given = planarPose(i);
     given.translation().y() += 0.02 * i;
     const Eigen::Isometry3d pose =
-        completion.complete(seenFrom(truePose(i), world), Eigen::Isometry3d::Identity(), given);
+        completion.complete(0.1 * i, seenFrom(truePose(i), world), Eigen::Isometry3d::Identity(), given);
     EXPECT_EQ(pose.translation().x(), given.translation().x());
     EXPECT_EQ(pose.translation().y(), given.translation().y());
     const Eigen::AngleAxisd turn(Eigen::Matrix3d(pose.linear() * given.linear().transpose()));
@@ -78,7 +78,7 @@ TEST(PlanarCompletion, EndsWithoutAStepWhereOdometryLeavesItsPlane) {
     Eigen::Isometry3d given = planarPose(i);
     if (i == 5) given.translation().z() = 0.002;  // once is enough
     const Eigen::Isometry3d pose =
-        completion.complete(seenFrom(truePose(i), world), Eigen::Isometry3d::Identity(), given);
+        completion.complete(0.1 * i, seenFrom(truePose(i), world), Eigen::Isometry3d::Identity(), given);
     EXPECT_EQ(completion.isActive(), i > 1 && i < 5) << i;
     const double step = distanceBetween(pose_before.inverse() * pose, given_before.inverse() * given);
     EXPECT_EQ(step > (i < 5 ? 1e-3 : 1e-12), i == 4) << "there is something to find in scan 4 alone; scan " << i;
@@ -88,7 +88,7 @@ TEST(PlanarCompletion, EndsWithoutAStepWhereOdometryLeavesItsPlane) {
   EXPECT_GT(distanceBetween(pose_before, given_before), 0.01) << "what was lacking is kept";
   completion.reset();
   for (int i = 0; i < 3; ++i) {
-    completion.complete(seenFrom(truePose(i), world), Eigen::Isometry3d::Identity(), planarPose(i));
+    completion.complete(0.1 * i, seenFrom(truePose(i), world), Eigen::Isometry3d::Identity(), planarPose(i));
   }
   EXPECT_TRUE(completion.isActive()) << "another odometry";
 }
@@ -98,15 +98,16 @@ TEST(PlanarCompletion, NeverJumpsByAStrangeCloudAndRecovers) {
   for (const auto& strange : strangeClouds()) {
     PlanarCompletion completion;
     int i = 0;
-    for (; i < 6; ++i) completion.complete(seenFrom(truePose(i), world), Eigen::Isometry3d::Identity(), planarPose(i));
+    for (; i < 6; ++i)
+      completion.complete(0.1 * i, seenFrom(truePose(i), world), Eigen::Isometry3d::Identity(), planarPose(i));
     for (; i < 9; ++i) {
-      const auto pose = completion.complete(strange.echoes, Eigen::Isometry3d::Identity(), planarPose(i));
+      const auto pose = completion.complete(0.1 * i, strange.echoes, Eigen::Isometry3d::Identity(), planarPose(i));
       EXPECT_LT(distanceBetween(pose, truePose(i)), 0.15) << strange.name << ", scan " << i;
       EXPECT_LT(rotationBetween(pose, truePose(i)), 0.1) << strange.name << ", scan " << i;
     }
     Eigen::Isometry3d pose;
     for (; i < 12; ++i) {
-      pose = completion.complete(seenFrom(truePose(i), world), Eigen::Isometry3d::Identity(), planarPose(i));
+      pose = completion.complete(0.1 * i, seenFrom(truePose(i), world), Eigen::Isometry3d::Identity(), planarPose(i));
     }
     EXPECT_LT(distanceBetween(pose, truePose(i - 1)), 1e-3) << strange.name;
   }
@@ -117,7 +118,7 @@ TEST(PlanarCompletion, LeavesOutOfTheMapWhatMoves) {
   PlanarCompletion completion;
   for (int i = 0; i < 6; ++i) {
     const auto echoes = seenFrom(truePose(i), world);
-    const auto pose = completion.complete(echoes, Eigen::Isometry3d::Identity(), planarPose(i));
+    const auto pose = completion.complete(0.1 * i, echoes, Eigen::Isometry3d::Identity(), planarPose(i));
     EXPECT_TRUE(pose.isApprox(planarPose(i), 0.0)) << "there was nothing to be found";
     const bool is_first_of_the_map = i == 2;
     if (is_first_of_the_map) {
