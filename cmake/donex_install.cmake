@@ -4,7 +4,7 @@ get_property(donex_programs GLOBAL PROPERTY donex_programs)
 
 if(DONEX_BUILD_ROS)
   install(TARGETS donex_core donex_simulation donex_io donex_evaluation donex_ros donex_simulated_lidar donex_bag_files
-      donex_nodelets
+      donex_nodelets donex_simulated_lidar_nodelet
     ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
     LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION})
   if(TARGET donex_octomap)
