@@ -1,8 +1,7 @@
 #include "simulation/rig.h"
 
-#include <algorithm>
-
 #include "core/pi.h"
+#include "simulation/named.h"
 
 namespace donex::simulation {
 namespace {
@@ -39,18 +38,10 @@ const std::vector<Rig>& rigs() {
 }
 
 const std::vector<std::string>& rigNames() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> all;
-    for (const Rig& rig : rigs()) all.emplace_back(rig.name);
-    return all;
-  }();
+  static const std::vector<std::string> names = namesOf(rigs());
   return names;
 }
 
-const Rig* findRig(const std::string& name) {
-  const auto has_name = [&](const Rig& rig) { return name == rig.name; };
-  const auto found = std::find_if(rigs().begin(), rigs().end(), has_name);
-  return found == rigs().end() ? nullptr : &*found;
-}
+const Rig* findRig(const std::string& name) { return findNamed(rigs(), name); }
 
 }  // namespace donex::simulation

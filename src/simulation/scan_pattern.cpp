@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/pi.h"
+#include "simulation/named.h"
 #include "simulation/random.h"
 
 namespace donex::simulation {
@@ -47,19 +48,11 @@ const std::vector<Pattern>& patterns() {
 }
 
 const std::vector<std::string>& patternNames() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> all;
-    for (const Pattern& pattern : patterns()) all.emplace_back(pattern.name);
-    return all;
-  }();
+  static const std::vector<std::string> names = namesOf(patterns());
   return names;
 }
 
-const Pattern* findPattern(const std::string& name) {
-  const auto has_name = [&](const Pattern& pattern) { return name == pattern.name; };
-  const auto found = std::find_if(patterns().begin(), patterns().end(), has_name);
-  return found == patterns().end() ? nullptr : &*found;
-}
+const Pattern* findPattern(const std::string& name) { return findNamed(patterns(), name); }
 
 ScanPattern::ScanPattern(const Pattern& pattern, double duration, std::uint64_t seed)
     : pattern_(pattern), duration_(duration), rays_(static_cast<int>(std::lround(pattern.ray_rate * duration))) {
