@@ -1,6 +1,7 @@
 // Scans that come in parts are labelled as whole scans are, and what a border cuts stays one object.
 #include <algorithm>
 #include <iostream>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -46,6 +47,14 @@ double iouOf(Method method, const std::vector<TrueScan>& drive, std::size_t coun
 
 class LabelsOfParts : public ::testing::TestWithParam<Method> {};
 
+/// On the motorway lorries fill several parts.
+TEST_P(LabelsOfParts, AreThoseOfWholeScansWithLorriesInThem) {
+  const std::vector<TrueScan> drive = simulatedDrive("motorway", 64, 25);
+  const double whole = iouOf(GetParam(), drive, 1), in_parts = iouOf(GetParam(), drive, 10);
+  std::cout << "whole: moving IoU " << whole << ", in ten parts: " << in_parts << '\n';
+  EXPECT_GT(in_parts, whole - 0.01);
+}
+
 TEST_P(LabelsOfParts, AreThoseOfWholeScansNearly) {
   const std::vector<TrueScan> drive = simulatedDrive("street", 64, 25);
   const double whole = iouOf(GetParam(), drive, 1);
@@ -90,6 +99,38 @@ TEST_P(LabelsOfParts, AVehicleThatABorderCutsKeepsOneNumberAndOneBox) {
       }
     }
     EXPECT_GE(seen, 2 * static_cast<int>(drive.size() - kSettled) - 4) << count << " parts";
+  }
+}
+
+/// A part of a scan, without its echoes on the ground where that is asked for.
+Scan partOf(const TrueScan& scan, const ScanParts& parts, std::size_t part, bool has_ground) {
+  constexpr std::uint32_t kClass = 0xFFFF;
+  const std::set<std::uint32_t> ground{40, 44, 48, 49, 72};  // SemanticKITTI: road to terrain
+  Scan cloud = parts[part];
+  cloud.echoes.clear();
+  for (const std::uint32_t echo : parts.echoesOf(part)) {
+    const bool stays = has_ground || ground.count(scan.truth[echo] & kClass) == 0;
+    if (stays) cloud.echoes.push_back(scan.scan.echoes[echo]);
+  }
+  return cloud;
+}
+
+/// The side of a lorry hides it in one part; a filter upstream removes it in all.
+TEST_P(LabelsOfParts, APartWithoutGroundIsNoRemovedGround) {
+  constexpr std::size_t kCount = 10, kHidden = 3, kFirst = 3;
+  const std::vector<TrueScan> drive = simulatedDrive("street", 64, 8);
+  for (const bool is_filtered : {false, true}) {
+    const auto detector = makeDetector(configOf(GetParam()));
+    ScanParts parts(kCount);
+    EchoLabels labels;
+    for (std::size_t k = 0; k < drive.size(); ++k) {
+      parts.cut(drive[k].scan, kPeriod);
+      for (std::size_t part = 0; part < kCount; ++part) {
+        detector->process(partOf(drive[k], parts, part, !is_filtered && part != kHidden), labels);
+        if (k < kFirst) continue;
+        EXPECT_EQ(detector->lacksGround(), is_filtered) << "scan " << k << ", part " << part;
+      }
+    }
   }
 }
 
