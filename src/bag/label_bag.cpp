@@ -123,7 +123,8 @@ void Labeler::take(const LabeledScan& scan) {
 
 /// Whole scans at 10 Hz, for the warm-up: parts of turns, and clouds of several sensors, are as many as their time says.
 std::size_t Labeler::scansBefore(double stamp) {
-  constexpr double kScan = 0.1, kJitter = 0.05;  // [s], and of a scan
+  constexpr double kScan = 0.1;     // [s]
+  constexpr double kJitter = 0.05;  // of a scan: stamps that come a little early
   if (summary_.times.size() == 1) first_stamp_ = stamp;
   const double scans = std::max(0.0, (stamp - first_stamp_) / kScan + kJitter);
   return std::min(summary_.times.size() - 1, static_cast<std::size_t>(scans));

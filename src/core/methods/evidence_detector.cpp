@@ -61,7 +61,8 @@ class EvidenceDetector : public Detector {
     enterPoints(scan.stamp);                   // in metres, and what lies between them and the odometry
     leaveOutTheBody(scan);
     const TurnPart part = sights_.arrive(scan, judged_.is_solid);
-    if (part != TurnPart::kContinuing) clock_.begin(scan.stamp);
+    judged_.continues_turn = part == TurnPart::kContinuing;
+    if (!judged_.continues_turn) clock_.begin(scan.stamp);
     heightsAboveGround(part);
     own_body_.learn(part, scan, judged_.is_echo, judged_.heights, clearance());
     loose_echoes_.loosen(part, scan.stamp, sights_.newest(), judged_.roles);

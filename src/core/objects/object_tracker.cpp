@@ -142,13 +142,13 @@ double ObjectTracker::stepOf(const Track& track) const {
 /// The first part of what moves lies somewhere in it.
 bool ObjectTracker::mayBeginWith(const Track& track, const Eigen::Vector3d& predicted, const Segment& segment) const {
   const Eigen::Array3d half = 0.5 * track.full_extent.array() + options_.whole_rim;
-  return segment.goes_on && track.dynamic && ((segment.low - predicted).array() > -half).all() &&
+  return segment.is_of_two_turns && track.dynamic && ((segment.low - predicted).array() > -half).all() &&
          ((segment.high - predicted).array() < half).all();
 }
 
 void ObjectTracker::follow(Track& track, double stamp, const Segment& segment) const {
   const double elapsed = stamp - track.last_seen;
-  if (elapsed > 0.0 && !segment.goes_on) {
+  if (elapsed > 0.0 && !segment.is_of_two_turns) {
     const Eigen::Vector3d velocity = (segment.center() - track.center) / elapsed;
     const bool is_second = track.last_seen <= track.first_seen;
     const double newest = is_second ? 1.0 : 1.0 - std::exp(-elapsed / options_.velocity_time);
@@ -170,7 +170,7 @@ void ObjectTracker::testMotion(Track& track, const MotionTests& tests, double st
     const FormerPlace former = tests.lookBack(trace);
     receded |= former.left >= config_.min_echoes && former.left > former.still;
     advanced |= former.left >= test_options_.least_left && segment.new_echoes >= config_.min_echoes;
-    if (segment.goes_on) continue;  // its shape is of two times
+    if (segment.is_of_two_turns) continue;  // its shape is of two times
     const bool has_changed = std::max(segment.new_echoes, former.left) >= test_options_.least_left;
     const bool fit_tells = rules_.isUpright(segment) || has_changed;
     moved = moved || (fit_tells && tests.hasMoved(trace, segment));
@@ -241,7 +241,7 @@ void ObjectTracker::reset() {
 
 std::size_t ObjectTracker::memoryBytes() const {
   return tracks_.capacity() * sizeof(Followed) + pairs_.capacity() * sizeof(Pair) + traces_.memoryBytes() +
-         track_of_.capacity() * sizeof(int) + objects_.capacity() * sizeof(Object);
+         (track_of_.capacity() + claim_of_.capacity()) * sizeof(int) + objects_.capacity() * sizeof(Object);
 }
 
 }  // namespace donex

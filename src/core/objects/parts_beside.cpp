@@ -40,7 +40,6 @@ PartsBeside::PartsBeside(const PartsBesideOptions& options)
 
 void PartsBeside::join(TurnPart part, const Scan& scan, const SightPixels& pixels, const Turns& turns,
                        JudgedScan& judged) {
-  judged.continues_turn = part == TurnPart::kContinuing;
   if (!judged.continues_turn) beginTurn(part, judged);
   if (!is_in_parts_) return;
   const std::uint8_t sensor = sensorOf(scan);
@@ -172,8 +171,9 @@ void PartsBeside::relate(const JudgedScan& judged, Segments& segments) {
   if (!is_in_parts_) return;
   for (Segment& segment : segments) {
     segment.object = objectOf(segment, judged.own());
-    segment.goes_on = std::any_of(segment.echoes.begin(), segment.echoes.end(),
-                                  [&](std::uint32_t echo) { return echo >= judged.own() && echo < end_of_last_turn_; });
+    segment.is_of_two_turns = std::any_of(segment.echoes.begin(), segment.echoes.end(), [&](std::uint32_t echo) {
+      return echo >= judged.own() && echo < end_of_last_turn_;
+    });
   }
 }
 

@@ -13,7 +13,7 @@
 namespace donex {
 
 struct PartsBesideOptions {
-  float border = 0.7F;  ///< to either side of it: no sensor's beams are farther apart [deg]
+  float border = 0.7F;  ///< gaps of twice as much between parts count as looked at: no beams lie farther apart [deg]
   float reach = 15.0F;  ///< cells of clusters that touch lie within it from 2.3 m on [deg]
 };
 

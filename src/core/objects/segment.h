@@ -27,8 +27,9 @@ struct Segment {
   float lowest = 0.0F;                          ///< height above ground [m]; 0 where no ground is known
   float lowest_new = 0.0F, highest_new = 0.0F;  ///< the same of its new echoes
   Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();  ///< odometry frame [m]
-  bool cut_out = false;      ///< cut from a larger cluster where a moving object was predicted
-  bool goes_on = false;      ///< has echoes of the turn before, where this one has not looked yet: more of it may come
+  bool cut_out = false;  ///< cut from a larger cluster where a moving object was predicted
+  bool is_of_two_turns =
+      false;                 ///< has echoes of the turn before, where this one has not looked yet: more of it may come
   std::uint32_t object = 0;  ///< that its echoes of earlier parts of the turn belong to; 0: none
 
   Eigen::Vector3d center() const { return 0.5 * (low + high); }

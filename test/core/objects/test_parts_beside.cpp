@@ -35,6 +35,7 @@ class Parts {
     judged.places.assign(scan.echoes.size(), Place::kNew);
     pixels_.project(scan.echoes, judged.is_echo);
     part = turns_.arrive(scan, pixels_);
+    judged.continues_turn = part == TurnPart::kContinuing;
     parts.join(part, scan, pixels_, turns_, judged);
     return judged;
   }
@@ -67,7 +68,7 @@ TEST(PartsBeside, WholeScansHaveNothingBeside) {
   for (int k = 0; k < 5; ++k) {
     EXPECT_EQ(parts.join(arc(0.0, 360.0, 0.1 * k)).beside, 0U);
     EXPECT_FALSE(parts.judged.continues_turn);
-    EXPECT_FALSE(parts.settle(7).goes_on);
+    EXPECT_FALSE(parts.settle(7).is_of_two_turns);
     EXPECT_EQ(parts.segments[0].object, 0U);
   }
 }
@@ -111,10 +112,10 @@ TEST(PartsBeside, AnObjectThatReachesThereComesWhole) {
 TEST(PartsBeside, ASegmentGoesOnWhereTheTurnHasNotLookedYet) {
   Parts parts = afterTwoTurnsInQuarters();
   parts.join(arc(0.0, 90.0, 0.2));
-  EXPECT_TRUE(parts.settle(0).goes_on) << "the turn before stands in";
+  EXPECT_TRUE(parts.settle(0).is_of_two_turns) << "the turn before stands in";
   for (const double begin : {90.0, 180.0}) parts.take(arc(begin, begin + 90.0, 0.2 + begin / 3600.0));
   parts.join(arc(270.0, 360.0, 0.275));
-  EXPECT_FALSE(parts.settle(0).goes_on) << "the turn has looked everywhere";
+  EXPECT_FALSE(parts.settle(0).is_of_two_turns) << "the turn has looked everywhere";
 }
 
 TEST(PartsBeside, EntriesStayInTheWorldWhileTheVehicleMoves) {
