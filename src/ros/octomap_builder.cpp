@@ -1,5 +1,6 @@
 #include "ros/octomap_builder.h"
 
+#include <limits>
 #include <vector>
 
 #include <octomap/OcTree.h>
@@ -29,6 +30,35 @@ void collapse(octomap::OcTree& octree, octomap::OcTreeNode* node, bool has_array
     child->setLogOdds(0.0F);
   }
   octree.pruneNode(node);
+}
+
+/// Sets a leaf of any depth, in a tree whose inner nodes are updated later.
+void setLeaf(octomap::OcTree& octree, const octomap::OcTreeKey& key, unsigned depth, float log_odds) {
+  constexpr bool kLazy = true;
+  if (octree.getRoot() == nullptr) octree.setNodeValue(key, log_odds, kLazy);  // only this makes a root
+  octomap::OcTreeNode* node = octree.getRoot();
+  for (unsigned level = octree.getTreeDepth(); level-- > octree.getTreeDepth() - depth;) {
+    const unsigned child = octomap::computeChildIdx(key, static_cast<int>(level));
+    node = octree.nodeChildExists(node, child) ? octree.getNodeChild(node, child) : octree.createNodeChild(node, child);
+  }
+  collapse(octree, node, octree.nodeHasChildren(node));
+  node->setLogOdds(log_odds);
+}
+
+/// Moves the contents of an octree against its origin. What its keys do not reach there is lost.
+void moveBy(octomap::OcTree& octree, const Eigen::Array3i& leaves) {
+  constexpr int kKeys = std::numeric_limits<octomap::key_type>::max() + 1;
+  octomap::OcTree moved(octree.getResolution());
+  for (auto leaf = octree.begin_leafs(); leaf != octree.end_leafs(); ++leaf) {
+    const octomap::OcTreeKey old = leaf.getKey();
+    const Eigen::Array3i key = Eigen::Array3i(old[0], old[1], old[2]) + leaves;
+    const bool is_reached = (key >= 0).all() && (key < kKeys).all();
+    if (!is_reached) continue;
+    const auto part = [&key](int axis) { return static_cast<octomap::key_type>(key[axis]); };
+    setLeaf(moved, {part(0), part(1), part(2)}, leaf.getDepth(), leaf->getLogOdds());
+  }
+  moved.updateInnerOccupancy();
+  octree.swapContent(moved);
 }
 
 /// Forgets blocks of an octree that lie beyond a range.
@@ -99,7 +129,8 @@ bool OctomapBuilder::add(const sensor_msgs::PointCloud2& cloud, const Eigen::Iso
   parseEchoes(cloud, *layout, echoes);
   octomap::Pointcloud points;
   points.reserve(echoes.size());
-  const Eigen::Isometry3f transform = map_from_cloud.cast<float>();
+  followWithOrigin(map_from_cloud.translation());
+  const Eigen::Isometry3f transform = (Eigen::Translation3d(-origin_) * map_from_cloud).cast<float>();
   for (const Eigen::Vector3f& echo : echoes) {
     if (!echo.allFinite()) continue;
     const Eigen::Vector3f place = transform * echo;
@@ -113,18 +144,30 @@ bool OctomapBuilder::add(const sensor_msgs::PointCloud2& cloud, const Eigen::Iso
   return true;
 }
 
+void OctomapBuilder::followWithOrigin(const Eigen::Vector3d& sensor) {
+  // Leaves that have absorbed others are smaller than this: after it they fall on leaves again.
+  constexpr int kStep = kReach / 2;
+  const double step = kStep * options_.resolution;
+  const bool is_far = (sensor - origin_).cwiseAbs().maxCoeff() > kReach * options_.resolution;
+  if (!is_far) return;
+  const Eigen::Array3d steps = ((sensor - origin_).array() / step).round();
+  origin_ += (step * steps).matrix();
+  moveBy(tree_->octree, -kStep * steps.cast<int>());
+}
+
 void OctomapBuilder::forgetAround(const Eigen::Vector3d& sensor) {
   // Often enough for the range to hold to a block, seldom enough not to walk the tree for every cloud.
   const double moved = (sensor - forgotten_around_).cwiseAbs().maxCoeff();
   if (moved < Forgetting::blockOf(tree_->octree)) return;
   forgotten_around_ = sensor;
-  Forgetting(tree_->octree, sensor, options_.map_range).run();
+  Forgetting(tree_->octree, sensor - origin_, options_.map_range).run();
 }
 
 std::size_t OctomapBuilder::nodes() const { return tree_->octree.size(); }
 
 bool OctomapBuilder::isOccupied(const Eigen::Vector3d& place) const {
-  const octomap::OcTreeNode* node = tree_->octree.search(place.x(), place.y(), place.z());
+  const Eigen::Vector3d in_tree = place - origin_;
+  const octomap::OcTreeNode* node = tree_->octree.search(in_tree.x(), in_tree.y(), in_tree.z());
   return node != nullptr && tree_->octree.isNodeOccupied(node);
 }
 
@@ -132,7 +175,7 @@ sensor_msgs::PointCloud2Ptr OctomapBuilder::occupiedCells(const std_msgs::Header
   std::vector<Eigen::Vector3f> centers;
   for (auto leaf = tree_->octree.begin_leafs(); leaf != tree_->octree.end_leafs(); ++leaf) {
     if (!tree_->octree.isNodeOccupied(*leaf)) continue;
-    centers.emplace_back(Eigen::Vector3d(leaf.getX(), leaf.getY(), leaf.getZ()).cast<float>());
+    centers.emplace_back((origin_ + Eigen::Vector3d(leaf.getX(), leaf.getY(), leaf.getZ())).cast<float>());
   }
   return cellCloud(centers, header);
 }

@@ -17,6 +17,9 @@ class OctomapBuilder {
     double map_range = 100.0;  ///< what lies farther from the sensor, along x, y or z, is forgotten [m]; 0: nothing is
   };
 
+  /// Lines of sight of so many leaves fit into the octree wherever the sensor is [leaves].
+  static constexpr int kReach = 1 << 14;
+
   explicit OctomapBuilder(const Options& options);
   ~OctomapBuilder();
 
@@ -34,11 +37,15 @@ class OctomapBuilder {
   sensor_msgs::PointCloud2Ptr occupiedCells(const std_msgs::Header& header) const;
 
  private:
+  /// The octree's keys reach twice kReach from its origin, and its coordinates are in single precision.
+  void followWithOrigin(const Eigen::Vector3d& sensor);
+
   /// Forgets what lies beyond the map's range, where the sensor has moved far enough since the last time.
   void forgetAround(const Eigen::Vector3d& sensor);
 
   struct Tree;
   Options options_;
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();            ///< of the octree, in the map [m]
   Eigen::Vector3d forgotten_around_ = Eigen::Vector3d::Zero();  ///< the sensor's place then [m]
   std::unique_ptr<Tree> tree_;
 };

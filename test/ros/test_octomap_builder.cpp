@@ -165,6 +165,30 @@ TEST(OctomapBuilder, MemoryStaysFlatOnALongDrive) {
       << "then the bound says little";
 }
 
+/// Where a drive along the street begins [m]. The posts stand 8 m apart.
+void expectSameMapAt(const Eigen::Vector3d& place) {
+  OctomapBuilder here({0.25, 20.0, 40.0}), there({0.25, 20.0, 40.0});
+  for (double at = -24.0; at < 24.0; at += 2.0) {
+    const Eigen::Isometry3d pose(Eigen::Translation3d(at + 0.03, 0.31, 1.81));  // no echo on a border of leaves
+    EXPECT_TRUE(here.add(*street(at), pose));
+    EXPECT_TRUE(there.add(*street(at), Eigen::Translation3d(place) * pose));
+  }
+  EXPECT_EQ(there.nodes(), here.nodes());
+  const auto cells = here.occupiedCells({});
+  EXPECT_GT(cells->width, 1000U);
+  std::size_t missing = 0;
+  for (sensor_msgs::PointCloud2ConstIterator<float> x(*cells, "x"); x != x.end(); ++x) {
+    missing += there.isOccupied(place + Eigen::Vector3f(x[0], x[1], x[2]).cast<double>()) ? 0U : 1U;
+  }
+  EXPECT_EQ(missing, 0U);
+}
+
+TEST(OctomapBuilder, TheMapIsTheSameFarFromTheOrigin) {
+  expectSameMapAt({4096.0, 0.0, 0.0});             // the octree's origin follows on the way
+  expectSameMapAt({16384.0, -16384.0, 0.0});       // beyond what its keys reach
+  expectSameMapAt({499712.0, 5324800.0, 2048.0});  // UTM
+}
+
 TEST(OctomapBuilder, UnreadableCloudsAreRefused) {
   OctomapBuilder map({});
   EXPECT_FALSE(map.add(*test::CloudBuilder().field("x", test::PointField::FLOAT32).size(2).build(),
