@@ -2,13 +2,13 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <ros/callback_queue_interface.h>
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
 #include <tf2_ros/buffer.h>
-#include <tf2_ros/transform_listener.h>
 
 #include "donex/memory_bound.h"
 #include "ros/cloud_subscription.h"
@@ -19,6 +19,7 @@
 #include "ros/pipeline.h"
 #include "ros/reconfigure.h"
 #include "ros/scan_publisher.h"
+#include "ros/tf_subscription.h"
 
 namespace donex {
 namespace {
@@ -27,7 +28,7 @@ constexpr double kLogPeriod = 5.0;     // between messages of one kind [s]
 constexpr double kCheckPeriod = 30.0;  // the same of odometry that disagrees with the scans [s]
 constexpr double kRetryPeriod = 0.01;  // waiting clouds are asked about this often at least [s]
 
-/// Between subscriptions to a topic anew, while what it sends is missing or cannot be read [s].
+/// Between subscriptions to the clouds' topic anew, while none of them can be read [s].
 constexpr double kRenewal = 5.0;
 
 /// A queue of roscpp's that is full drops silently. Ours takes whatever comes while one scan is judged; after that scan
@@ -64,8 +65,6 @@ class DonexNode::Implementation {
   PipelineEvents events();
   void publish(const LabeledScan& scan);
   void checkOdometry(const LabeledScan& scan);
-  void listenToTf();
-  void renewTf();
   void listenToClouds();
   void renewClouds();
 
@@ -79,9 +78,8 @@ class DonexNode::Implementation {
   ros::NodeHandle nh_, pnh_;
   Config config_;
   tf2_ros::Buffer tf_;
-  std::unique_ptr<tf2_ros::TransformListener> tf_listener_;
-  ros::WallTime listening_since_;
-  ros::WallTime clouds_since_;  // when the clouds were subscribed to, or could be read last
+  std::optional<TfSubscription> tf_subscription_;
+  ros::WallTime clouds_since_;   // when the clouds were subscribed to, or could be read last
   bool cannot_be_read_ = false;  // none of the clouds since then
   Pipeline pipeline_;
   Diagnostics diagnostics_;
@@ -110,7 +108,7 @@ DonexNode::Implementation::Implementation(const ros::NodeHandle& nh, const ros::
                                      << " MB at most (memory_limit " << config_.memory_limit << " MB)");
   // A sensor at rest needs no tf.
   const bool needs_tf = config_.motion.source != OdometrySource::kNone;
-  if (needs_tf) listenToTf();
+  if (needs_tf) tf_subscription_.emplace(tf_, nh_);
 
   reset_service_ = pnh_.advertiseService("reset", &Implementation::onReset, this);
   reconfigure_ = std::make_unique<Reconfigure>(pnh_, config_, [this](const Config& config) { onChange(config); });
@@ -138,24 +136,10 @@ DonexNode::Implementation::~Implementation() {
   odometry_monitor_.reset();
 }
 
-void DonexNode::Implementation::listenToTf() {
-  tf_listener_.reset();  // first: a topic with a subscriber left is not connected anew
-  tf_listener_ = std::make_unique<tf2_ros::TransformListener>(tf_, nh_);
-  listening_since_ = ros::WallTime::now();
-}
-
-/// /tf_static is sent once to each subscriber; whoever missed it would wait for ever.
-void DonexNode::Implementation::renewTf() {
-  const bool is_due = tf_listener_ && (ros::WallTime::now() - listening_since_).toSec() >= kRenewal;
-  if (!is_due) return;
-  ROS_WARN_STREAM_NAMED("donex", "a transform is missing: subscribing to tf anew");
-  listenToTf();
-}
-
 void DonexNode::Implementation::listenToClouds() {
   const CloudReceiver receiver{[this](const sensor_msgs::PointCloud2ConstPtr& cloud) { onCloud(cloud); },
                                [this](const std::string& why) { onUnreadable(why); }};
-  cloud_subscriber_.shutdown();  // first, as for tf
+  cloud_subscriber_.shutdown();  // first: a topic with a subscriber left is not connected anew
   cloud_subscriber_ = subscribeToClouds(nh_, "points", kUnbounded, receiver);
   clouds_since_ = ros::WallTime::now();
   cannot_be_read_ = false;
@@ -243,7 +227,7 @@ PipelineEvents DonexNode::Implementation::events() {
     const std::string full = std::string(describe(reason)) + ": " + text;
     ROS_WARN_STREAM_THROTTLE_NAMED(kLogPeriod, "donex", "cloud dropped, " << full);
     diagnostics_.dropped(reason, full);
-    if (reason == DropReason::kNoTransform) renewTf();
+    if (reason == DropReason::kNoTransform && tf_subscription_) tf_subscription_->transformIsMissing();
   };
   events.refused = [this](OdometryRefusal refusal, const std::string& text) {
     const std::string full = std::string(describe(refusal)) + ": " + text;

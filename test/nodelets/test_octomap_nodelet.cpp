@@ -1,10 +1,15 @@
-// donex/OctomapNodelet in the manager of this process: parameters that cannot be meant.
+// donex/OctomapNodelet in this process: parameters that cannot be meant, and what must not keep clouds out of the map.
+#include <atomic>
 #include <cmath>
 #include <string>
 
 #include <gtest/gtest.h>
 #include <nodelet/loader.h>
 #include <ros/ros.h>
+#include <tf2_msgs/TFMessage.h>
+
+#include "ros/manager_rig.h"
+#include "ros/unserved_nodelet.h"
 
 namespace donex {
 namespace {
@@ -32,6 +37,53 @@ TEST_F(OctomapNodeletTest, ParametersOutOfRangeAreRefused) {
   EXPECT_TRUE(loadsWith("map_range", 0.0)) << "nothing is forgotten";
   EXPECT_TRUE(loadsWith("resolution", 0.2)) << "then refusing says little";
   EXPECT_TRUE(loadsWith("max_range", 100.0));
+}
+
+/// A sensor at rest, its map, and who looks at it.
+class MapRig {
+ public:
+  MapRig()
+      : clouds_(nh_.advertise<sensor_msgs::PointCloud2>("clouds", 10)),
+        cells_(nh_.subscribe("/map/cells", 1, &MapRig::onCells, this)),
+        map_("/map", "donex/OctomapNodelet", {{"/points", clouds_.getTopic()}}) {}
+
+  /// A cloud every 50 ms, until the map shows one. False where it never does.
+  bool sendUntilMapped(const std::string& frame) {
+    return test::waitFor([&] {
+      clouds_.publish(test::plainCloud(test::ring(), ros::Time::now().toSec(), frame));
+      return test::waitFor([this] { return is_mapped_; }, 0.05);
+    });
+  }
+
+ private:
+  void onCells(const sensor_msgs::PointCloud2ConstPtr& cells) { is_mapped_ = cells->width > 0; }
+
+  ros::NodeHandle nh_;
+  bool is_mapped_ = false;
+  ros::Publisher clouds_;
+  ros::Subscriber cells_;
+  test::UnservedNodelet map_;
+};
+
+TEST(OctomapNodelet, MapsWithAManagerThatDropsCallbacks) {
+  tf2_ros::StaticTransformBroadcaster transforms;
+  transforms.sendTransform(test::transformAt(0.0, "odom", "lidar", 0.0, 1.7));
+  MapRig rig;
+  EXPECT_TRUE(rig.sendUntilMapped("lidar"));
+}
+
+TEST(OctomapNodelet, ALostLatchedTransformIsAskedForAgain) {
+  // Says nothing to the first subscriber, as if the message had been lost, and tells every later one.
+  tf2_msgs::TFMessage mounting;
+  mounting.transforms.push_back(test::transformAt(0.0, "odom", "lidar_on_the_roof", 0.0, 2.0));
+  std::atomic<int> subscribers{0};
+  const ros::SubscriberStatusCallback connected = [&](const ros::SingleSubscriberPublisher& subscriber) {
+    if (++subscribers > 1) subscriber.publish(mounting);
+  };
+  const ros::Publisher tf = ros::NodeHandle().advertise<tf2_msgs::TFMessage>("/tf_static", 10, connected);
+  MapRig rig;
+  EXPECT_TRUE(rig.sendUntilMapped("lidar_on_the_roof"));
+  EXPECT_GE(subscribers, 2);
 }
 
 }  // namespace

@@ -66,6 +66,13 @@ class ManagerTest : public ::testing::Test {
   }
   bool tryLoad() { return manager_.load(nodeName(), "donex/DonexNodelet", {}, {}); }
 
+  void connect(const ros::Publisher& clouds) {
+    labeled_ = nh_.subscribe("donex/labeled_points", 200, &ManagerTest::onLabeled, this);
+    ASSERT_TRUE(waitFor([&] {
+      return clouds.getNumSubscribers() == 1 && odometry_.getNumSubscribers() == 1 && labeled_.getNumPublishers() == 1;
+    }));
+  }
+
   std::string nodeName() const { return nh_.getNamespace() + "/donex"; }
 
   void sendOdometry(double stamp) { odometry_.publish(boost::make_shared<nav_msgs::Odometry>(odometryAt(stamp))); }
@@ -110,12 +117,6 @@ class ManagerTest : public ::testing::Test {
   static std::string uniqueNamespace() {
     static std::atomic<int> count{0};
     return "/test_" + std::to_string(++count);
-  }
-  void connect(const ros::Publisher& clouds) {
-    labeled_ = nh_.subscribe("donex/labeled_points", 200, &ManagerTest::onLabeled, this);
-    ASSERT_TRUE(waitFor([&] {
-      return clouds.getNumSubscribers() == 1 && odometry_.getNumSubscribers() == 1 && labeled_.getNumPublishers() == 1;
-    }));
   }
   void onLabeled(const sensor_msgs::PointCloud2ConstPtr& cloud) { received_.push_back(cloud); }
   void onDiagnostics(const diagnostic_msgs::DiagnosticArrayConstPtr& array) {

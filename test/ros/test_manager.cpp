@@ -3,6 +3,7 @@
 #include <std_srvs/Trigger.h>
 
 #include "ros/manager_rig.h"
+#include "ros/unserved_nodelet.h"
 
 namespace donex {
 namespace {
@@ -33,6 +34,15 @@ TEST_F(Manager, LabelsEveryCloudInItsFrame) {
   }
   ASSERT_TRUE(waitForDiagnostic("clouds labelled", "20"));
   EXPECT_EQ(diagnostic("clouds dropped"), "0");
+}
+
+TEST_F(Manager, NothingIsLostToAManagerThatDropsCallbacks) {
+  const test::UnservedNodelet nodelet(nodeName(), "donex/DonexNodelet");
+  connect(clouds_);
+  sendCloud(100.0);
+  sendOdometry(100.0);
+  EXPECT_TRUE(waitForLabeled(1)) << "not with the next cloud, which may never come";
+  EXPECT_TRUE(waitForDiagnostic("clouds labelled", "1")) << "its timers run";
 }
 
 TEST_F(Manager, ThePartsDivideTheCloudWhileSomebodyListens) {

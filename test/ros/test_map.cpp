@@ -67,9 +67,9 @@ TEST(Map, CloudsAreHandedOverWithinTheManager) {
   const boost::function<void(const sensor_msgs::PointCloud2ConstPtr&)> take = [&](const auto& cloud) { cells = cloud; };
   const auto subscriber = nh.subscribe<sensor_msgs::PointCloud2>("/static_map/cells", 1, take);
   ASSERT_TRUE(waitFor([&] { return cells && cells->width > 100; })) << "there is no map";
-  // LiDAR to classifier, classifier to filter, filter to octree.
+  // LiDAR to classifier, classifier to octree.
   const std::vector<std::string> once{"INTRAPROCESS"};
-  for (const std::string topic : {"/points", "/donex/static_points", "/thin_static_points/output"}) {
+  for (const std::string topic : {"/points", "/donex/static_points"}) {
     EXPECT_EQ(transportsOf(topic, "o"), once) << topic;
     EXPECT_EQ(transportsOf(topic, "i"), once) << topic;
   }
