@@ -12,7 +12,7 @@
 namespace donex {
 
 /// A class that is built from (nh, pnh) as a nodelet. Its callbacks run on one thread of its own, not on the manager's
-/// queues: the manager of nodelet 1.10.0 (Debian 11, the first year of Noetic) drops what these are given until onInit
+/// queues: the manager of nodelet 1.10.0 (Debian 11; Noetic until January 2021) drops what these are given until onInit
 /// returns. From then on a timer, or a subscription with a queue of one, is dead; other subscriptions stay a message
 /// behind.
 template <class Node>

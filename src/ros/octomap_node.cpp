@@ -1,6 +1,7 @@
 #include "ros/octomap_node.h"
 
 #include <algorithm>
+#include <chrono>
 #include <iterator>
 #include <stdexcept>
 #include <vector>
@@ -15,14 +16,14 @@
 namespace donex {
 namespace {
 
-constexpr double kWorkPeriod = 0.02;    // waiting clouds are looked at this often [s]
-constexpr double kPublishPeriod = 1.0;  // [s]
-constexpr double kLogPeriod = 5.0;      // between messages of one kind [s]
+constexpr double kPublishPeriod = 1.0;                 // [s]
+constexpr double kLogPeriod = 5.0;                     // between messages of one kind [s]
+constexpr std::chrono::milliseconds kRetryPeriod(20);  // clouds that wait for tf are looked at this often
 
 /// A cloud waits for tf, which may come later than it does, and for the map to be done with newer ones [s].
 constexpr double kLongestWait = 1.0;
 
-/// A queue of roscpp's that is full drops silently. Ours takes whatever comes while a cloud is added.
+/// A queue of roscpp's that is full drops silently. Ours is emptied at once, into one that tells.
 constexpr std::uint32_t kUnbounded = 0;
 
 /// A range that may be switched off with 0.
@@ -67,25 +68,30 @@ OctomapNode::OctomapNode(const ros::NodeHandle& nh, const ros::NodeHandle& pnh)
   ros::NodeHandle topics(nh), own_topics(pnh);
   publisher_ = own_topics.advertise<sensor_msgs::PointCloud2>("cells", 1, true);
   subscriber_ = topics.subscribe("points", kUnbounded, &OctomapNode::onCloud, this);
-  work_timer_ = topics.createWallTimer(ros::WallDuration(kWorkPeriod), [this](const ros::WallTimerEvent&) { work(); });
-  publish_timer_ =
-      topics.createWallTimer(ros::WallDuration(kPublishPeriod), [this](const ros::WallTimerEvent&) { publish(); });
+  thread_ = std::thread([this] { run(); });
+}
+
+OctomapNode::~OctomapNode() {
+  subscriber_.shutdown();
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stop_ = true;
+  }
+  wake_.notify_all();
+  thread_.join();
 }
 
 void OctomapNode::onCloud(const sensor_msgs::PointCloud2ConstPtr& cloud) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const ros::WallTime now = ros::WallTime::now();
   ++arrived_;
-  waiting_.push_back({ros::WallTime::now(), cloud});
-}
-
-/// Looks for clouds that came meanwhile before it adds many.
-void OctomapNode::work() {
-  const ros::WallTime begin = ros::WallTime::now();
-  giveUpTheLate(begin);
-  while (addNewest() && (ros::WallTime::now() - begin).toSec() < kWorkPeriod) continue;
+  waiting_.push_back({now, cloud});
+  giveUpTheLate(now);
+  wake_.notify_all();
 }
 
 void OctomapNode::giveUpTheLate(const ros::WallTime& now) {
-  while (!waiting_.empty() && (now - waiting_.front().since).toSec() > kLongestWait) {
+  while ((now - waiting_.front().since).toSec() > kLongestWait) {
     const std_msgs::Header& header = waiting_.front().cloud->header;
     std::string why;
     const bool is_reached = tf_.canTransform(settings_.fixed_frame, header.frame_id, header.stamp, &why);
@@ -95,30 +101,50 @@ void OctomapNode::giveUpTheLate(const ros::WallTime& now) {
   }
 }
 
+void OctomapNode::run() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (!stop_) {
+    lock.unlock();
+    const bool is_busy = addNewest();
+    publish();
+    lock.lock();
+    if (!is_busy && !stop_) wake_.wait_for(lock, kRetryPeriod);
+  }
+}
+
 /// Of those that tf reaches: a map that cannot keep up with the sensor shows the present. False where there is none.
 bool OctomapNode::addNewest() {
   const auto is_reached = [this](const Waiting& waiting) {
     const std_msgs::Header& header = waiting.cloud->header;
     return tf_.canTransform(settings_.fixed_frame, header.frame_id, header.stamp);
   };
+  std::unique_lock<std::mutex> lock(mutex_);
   const auto newest = std::find_if(waiting_.rbegin(), waiting_.rend(), is_reached);
   if (newest == waiting_.rend()) return false;
   const sensor_msgs::PointCloud2ConstPtr cloud = newest->cloud;
   waiting_.erase(std::prev(newest.base()));
+  lock.unlock();
   add(*cloud);
   return true;
 }
 
 void OctomapNode::add(const sensor_msgs::PointCloud2& cloud) {
+  std::string fault;
   try {
     const auto transform = tf_.lookupTransform(settings_.fixed_frame, cloud.header.frame_id, cloud.header.stamp);
-    if (!map_.add(cloud, tf2::transformToEigen(transform))) return leaveOut("it cannot be read");
-    stamp_ = cloud.header.stamp;
+    if (!map_.add(cloud, tf2::transformToEigen(transform))) fault = "it cannot be read";
   } catch (const std::exception& error) {  // it would end the whole manager
-    leaveOut(error.what());
+    fault = error.what();
   }
+  if (fault.empty()) {
+    stamp_ = cloud.header.stamp;
+    return;
+  }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  leaveOut(fault);
 }
 
+/// With the mutex.
 void OctomapNode::leaveOut(const std::string& why) {
   ++left_out_;
   ROS_WARN_STREAM_THROTTLE_NAMED(
@@ -127,7 +153,9 @@ void OctomapNode::leaveOut(const std::string& why) {
 
 /// The whole octree is walked: not where nobody asks for it.
 void OctomapNode::publish() {
-  if (publisher_.getNumSubscribers() == 0 || stamp_.isZero()) return;
+  const ros::WallTime now = ros::WallTime::now();
+  if (now < publish_at_ || publisher_.getNumSubscribers() == 0 || stamp_.isZero()) return;
+  publish_at_ = now + ros::WallDuration(kPublishPeriod);
   std_msgs::Header header;
   header.frame_id = settings_.fixed_frame;
   header.stamp = stamp_;

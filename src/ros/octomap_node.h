@@ -1,9 +1,12 @@
 // An octree of what clouds show, as a ROS node: a consumer of ~static_points.
 #pragma once
 
+#include <condition_variable>
 #include <cstddef>
 #include <deque>
+#include <mutex>
 #include <string>
+#include <thread>
 
 #include <ros/node_handle.h>
 #include <sensor_msgs/PointCloud2.h>
@@ -21,6 +24,7 @@ class OctomapNode {
  public:
   /// Throws std::invalid_argument with every fault of the parameters.
   OctomapNode(const ros::NodeHandle& nh, const ros::NodeHandle& pnh);
+  ~OctomapNode();
 
  private:
   struct Settings {
@@ -33,24 +37,33 @@ class OctomapNode {
   };
   static Settings readSettings(const ros::NodeHandle& pnh);
 
+  // On the callbacks' thread, so that clouds do not pile up while one is added.
   void onCloud(const sensor_msgs::PointCloud2ConstPtr& cloud);
-  void work();
   void giveUpTheLate(const ros::WallTime& now);
+
+  // On a thread of the map's own.
+  void run();
   bool addNewest();
   void add(const sensor_msgs::PointCloud2& cloud);
-  void leaveOut(const std::string& why);
   void publish();
+
+  void leaveOut(const std::string& why);
 
   Settings settings_;
   OctomapBuilder map_;
-  std::deque<Waiting> waiting_;             ///< as they came
-  std::size_t arrived_ = 0, left_out_ = 0;  ///< clouds
-  ros::Time stamp_;                         ///< of the cloud that was added last
+  ros::Time stamp_;           ///< of the cloud that was added last
+  ros::WallTime publish_at_;  ///< or later
   tf2_ros::Buffer tf_;
   TfSubscription tf_subscription_;
   ros::Publisher publisher_;
   ros::Subscriber subscriber_;
-  ros::WallTimer work_timer_, publish_timer_;
+
+  std::mutex mutex_;  ///< of what follows
+  std::condition_variable wake_;
+  std::deque<Waiting> waiting_;             ///< as they came
+  std::size_t arrived_ = 0, left_out_ = 0;  ///< clouds
+  bool stop_ = false;
+  std::thread thread_;
 };
 
 }  // namespace donex
