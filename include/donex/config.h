@@ -129,7 +129,7 @@ struct Config {
   Region region;
   Compensation compensation = Compensation::kScroll;
   int memory_limit = 1000;  // [MB]
-  int threads = 1;
+  int threads = 1;  ///< that judge a scan together: of donex_2d and donex_3d, by evidence and by the paper's rule
   EvidenceConfig evidence;
   SelfConfig self;
   ObjectConfig objects;

@@ -45,7 +45,8 @@ void visitClassifier(Config& config, Visitor& visit) {
                       "and voxel size",
                       true},
         config.memory_limit, 10, 100000);
-  visit(ParameterInfo{"threads", "", "threads that the grids of the paper may use; labels do not depend on it", true},
+  visit(ParameterInfo{"threads", "",
+                      "threads that judge a scan together (donex_2d, donex_3d); labels do not depend on it", true},
         config.threads, 1, 64);
 }
 

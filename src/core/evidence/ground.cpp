@@ -17,7 +17,6 @@ constexpr int kReach = 2;      // cells over which the ground is continued; a bi
 constexpr int kBearings = 64;  // sectors of equal azimuth, a bit each
 constexpr int kNearCells = 6;  // around the sensor, where sectors are narrower than cells
 constexpr std::uint64_t kAllSectors = ~std::uint64_t{0};
-constexpr float kNone = std::numeric_limits<float>::infinity();
 
 /// The number of every echo's cell, or -1 outside the map.
 DONEX_WIDE_LOOPS void findCells(const Eigen::Vector3f& sensor, float cell, int width, const Eigen::Vector3f* echoes,
@@ -234,17 +233,6 @@ float Ground::heightOf(const Eigen::Vector3f& point) const {
   int cell = -1;
   findCells(sensor_ - shift_, options_.cell, width_, &point, 1, &cell);
   return heightIn(cell, point.z());
-}
-
-void Ground::heightsOf(const std::vector<Eigen::Vector3f>& echoes, std::vector<float>& heights) const {
-  resizeTo(heights, echoes.size());
-  for (std::size_t i = 0; i < echoes.size(); ++i) heights[i] = heightIn(cell_of_[i], echoes[i].z());
-}
-
-float Ground::heightIn(int cell, float z) const {
-  if (cell < 0) return kNone;
-  const float ground = ground_[static_cast<std::size_t>(cell)];
-  return ground == kNone ? kNone : z + shift_.z() - ground;
 }
 
 double Ground::bytesFor(double reach, double echoes, const GroundOptions& options) {

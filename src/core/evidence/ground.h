@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -47,14 +48,16 @@ class Ground {
   /// Height above the ground [m]; infinite outside the map, or where no ground was found at all.
   float heightOf(const Eigen::Vector3f& point) const;
 
-  /// The same of every echo of the last estimate (the same points again).
-  void heightsOf(const std::vector<Eigen::Vector3f>& echoes, std::vector<float>& heights) const;
+  /// The same of an echo of the last estimate, by its number there and its height `z` in the frame [m].
+  float heightOfEcho(std::size_t echo, float z) const { return heightIn(cell_of_[echo], z); }
 
   std::size_t memoryBytes() const;
   /// What memoryBytes will be, for scans of so many echoes [bytes].
   static double bytesFor(double reach, double echoes, const GroundOptions& options = {});
 
  private:
+  static constexpr float kNone = std::numeric_limits<float>::infinity();
+
   /// A bit per direction, in sectors of equal azimuth; the cells around the sensor lie in all of them.
   using Sectors = std::uint64_t;
   struct Cell {
@@ -82,7 +85,11 @@ class Ground {
     return static_cast<std::size_t>(y + middle) * static_cast<std::size_t>(width_) +
            static_cast<std::size_t>(x + middle);
   }
-  float heightIn(int cell, float z) const;
+  float heightIn(int cell, float z) const {
+    if (cell < 0) return kNone;
+    const float ground = ground_[static_cast<std::size_t>(cell)];
+    return ground == kNone ? kNone : z + shift_.z() - ground;
+  }
   Eigen::Vector2f offsetOf(const Cell& cell) const;  ///< from the sensor's cell [m]
   /// In this turn, or in the one before where this one has none yet.
   float lowestIn(std::size_t cell) const { return std::isinf(lowest_[cell]) ? before_[cell] : lowest_[cell]; }

@@ -43,11 +43,12 @@ float OwnBody::farthestFrom(const Eigen::Vector3f& mounting) const {
   return half_.matrix().norm() + (mounting - center_).norm();
 }
 
-void OwnBody::leaveOut(const Scan& scan, std::vector<std::uint8_t>& is_solid) const {
+void OwnBody::leaveOut(const Scan& scan, std::size_t first, std::size_t last,
+                       std::vector<std::uint8_t>& is_solid) const {
   if (!is_found_ && !hasBox()) return;
   const Eigen::Isometry3f base_from_sensor = scan.base_from_sensor.cast<float>();
   const float farthest = detects() ? farthestFrom(base_from_sensor.translation()) : 0.0F;
-  for (std::size_t i = 0; i < scan.echoes.size(); ++i) {
+  for (std::size_t i = first; i < last; ++i) {
     const bool may_be_in_a_cell = scan.echoes[i].squaredNorm() < farthest * farthest;
     if (!may_be_in_a_cell && !hasBox()) continue;
     const Eigen::Vector3f place = base_from_sensor * scan.echoes[i];

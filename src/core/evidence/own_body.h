@@ -35,7 +35,11 @@ class OwnBody {
   OwnBody(const SelfConfig& config, const Options& options);
 
   /// Sets `is_solid` to 0 where an echo is the body's, as far as it is known from earlier scans or named as a box.
-  void leaveOut(const Scan& scan, std::vector<std::uint8_t>& is_solid) const;
+  void leaveOut(const Scan& scan, std::vector<std::uint8_t>& is_solid) const {
+    leaveOut(scan, 0, scan.echoes.size(), is_solid);
+  }
+  /// The same of the echoes from `first` to `last` (not included).
+  void leaveOut(const Scan& scan, std::size_t first, std::size_t last, std::vector<std::uint8_t>& is_solid) const;
 
   /// Learns from a scan; `heights` of its echoes above ground [m], from `lowest` on they count: the ground also stays
   /// with the sensor.
@@ -66,7 +70,7 @@ class OwnBody {
   std::vector<std::uint8_t> counts_;  ///< by cell
   std::vector<std::uint8_t> hit_;     ///< by cell: in this turn
   bool has_place_ = false, is_counting_ = false;
-  bool is_found_ = false;  ///< some cell is the body's
+  bool is_found_ = false;                                 ///< some cell is the body's
   Eigen::Vector3f center_ = Eigen::Vector3f::Zero();      ///< of the cells, in the vehicle [m]
   Eigen::Vector3d last_place_ = Eigen::Vector3d::Zero();  ///< of the vehicle, counted last, in the odometry frame [m]
 };

@@ -78,18 +78,20 @@ Placement GridWindow::placementOf(const Scan& scan) const {
   return placement;
 }
 
-void GridWindow::enter(const Scan& scan, GridScan& result) const {
-  const Placement placement = placementOf(scan);
-  result.origin = placement.origin;
+void GridWindow::beginScan(const Scan& scan, GridScan& result) const {
+  result.origin = placementOf(scan).origin;
   resizeTo(result.echoes, scan.echoes.size());
   resizeTo(result.inside, scan.echoes.size());
-  const auto keep = [&](std::size_t first, const EchoBlock& block) {
+}
+
+void GridWindow::enterSome(const Scan& scan, std::size_t first, std::size_t last, GridScan& result) const {
+  const auto keep = [&](std::size_t begin, const EchoBlock& block) {
     for (int i = 0; i < block.count; ++i) {
-      result.echoes[first + static_cast<std::size_t>(i)] = {block.x[i], block.y[i], block.z[i]};
-      result.inside[first + static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(block.inside[i]);
+      result.echoes[begin + static_cast<std::size_t>(i)] = {block.x[i], block.y[i], block.z[i]};
+      result.inside[begin + static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(block.inside[i]);
     }
   };
-  forEachBlock(placement, scan.echoes, 0, blocksOf(scan.echoes.size()), keep);
+  forEachBlock(placementOf(scan), scan.echoes, first / EchoBlock::kSize, blocksOf(last), keep);
 }
 
 GridOutline GridWindow::outline() const {
@@ -99,10 +101,15 @@ GridOutline GridWindow::outline() const {
 
 void placePoints(const GridWindow& window, const GridScan& scan, std::vector<Eigen::Vector3f>& points,
                  std::vector<std::uint8_t>& is_echo) {
-  const auto size = static_cast<float>(window.voxelSize());
   resizeTo(points, scan.echoes.size());
   resizeTo(is_echo, scan.echoes.size());
-  for (std::size_t i = 0; i < scan.echoes.size(); ++i) {
+  placeSomePoints(window, scan, 0, scan.echoes.size(), points, is_echo);
+}
+
+void placeSomePoints(const GridWindow& window, const GridScan& scan, std::size_t first, std::size_t last,
+                     std::vector<Eigen::Vector3f>& points, std::vector<std::uint8_t>& is_echo) {
+  const auto size = static_cast<float>(window.voxelSize());
+  for (std::size_t i = first; i < last; ++i) {
     points[i] = scan.echoes[i] * size;
     is_echo[i] = std::isnan(scan.echoes[i].x()) ? 0 : 1;
   }

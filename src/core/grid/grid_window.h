@@ -47,7 +47,14 @@ class GridWindow {
   /// How a scan lies in the window. Call after moveTo with the scan's own pose.
   Placement placementOf(const Scan& scan) const;
   /// Gives every echo its place. Call after moveTo with the scan's own pose.
-  void enter(const Scan& scan, GridScan& result) const;
+  void enter(const Scan& scan, GridScan& result) const {
+    beginScan(scan, result);
+    enterSome(scan, 0, scan.echoes.size(), result);
+  }
+  /// The same in two steps: makes room for the echoes,
+  void beginScan(const Scan& scan, GridScan& result) const;
+  /// and enters those from `first`, where a block begins, to `last` (not included).
+  void enterSome(const Scan& scan, std::size_t first, std::size_t last, GridScan& result) const;
 
   Compensation compensation() const { return compensation_; }
   double voxelSize() const { return voxel_size_; }
@@ -87,6 +94,9 @@ class GridWindow {
 /// A scan's echoes from the window's lowest corner [m], and which of them are echoes at all.
 void placePoints(const GridWindow& window, const GridScan& scan, std::vector<Eigen::Vector3f>& points,
                  std::vector<std::uint8_t>& is_echo);
+/// The same of those from `first` to `last` (not included), where there is room for them.
+void placeSomePoints(const GridWindow& window, const GridScan& scan, std::size_t first, std::size_t last,
+                     std::vector<Eigen::Vector3f>& points, std::vector<std::uint8_t>& is_echo);
 
 /// An order of voxels.
 bool isBefore(const Index3& a, const Index3& b);

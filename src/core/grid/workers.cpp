@@ -19,6 +19,11 @@ Workers::Workers(int threads) : threads_(threads), arena_(threads > 1 ? std::mak
 
 Workers::~Workers() = default;
 
+const Workers& Workers::alone() {
+  static const Workers workers(1);
+  return workers;
+}
+
 void Workers::each(std::size_t pieces, const std::function<void(std::size_t)>& work) const {
   if (arena_ == nullptr) {
     for (std::size_t i = 0; i < pieces; ++i) work(i);

@@ -6,6 +6,7 @@
 #include "core/evidence/newness.h"
 #include "core/evidence/own_body.h"
 #include "core/grid/storage.h"
+#include "core/grid/workers.h"
 #include "core/methods/detectors.h"
 #include "core/methods/evidence_explanation.h"
 #include "core/methods/stream_guard.h"
@@ -18,6 +19,7 @@
 namespace donex {
 namespace {
 
+static_assert(kStretch % EchoBlock::kSize == 0);
 constexpr std::size_t kPrefetchAhead = 12;  // echoes; long enough for memory to answer
 
 struct EvidenceDetectorOptions {
@@ -45,6 +47,7 @@ class EvidenceDetector : public Detector {
  public:
   explicit EvidenceDetector(const Config& config)
       : config_(config),
+        workers_(config.threads),
         places_(config.scrolling()),  // births are times, which resampling would blur
         clock_(config.evidence.birth_age ? config.evidence.birth_window : 0.0),
         sights_(historyOf(config.evidence, options_)),
@@ -56,27 +59,26 @@ class EvidenceDetector : public Detector {
 
   void process(const Scan& scan, EchoLabels& labels) override {
     guard_.admit(scan);
-    places_.shift(scan.odom_from_base);        // voxel shift (paper, "Ego motion")
-    places_.window().enter(scan, in_voxels_);  // every frame once: in voxels,
-    enterPoints(scan.stamp);                   // in metres, and what lies between them and the odometry
-    leaveOutTheBody(scan);
-    const TurnPart part = sights_.arrive(scan, judged_.is_solid);
+    places_.shift(scan.odom_from_base);  // voxel shift (paper, "Ego motion")
+    enter(scan);
+    const TurnPart part = sights_.arrive(scan, judged_.is_solid, workers_);
     judged_.continues_turn = part == TurnPart::kContinuing;
     if (!judged_.continues_turn) clock_.begin(scan.stamp);
+    workers_.both([&] { estimateGround(part); }, [&] { sights_.draw(scan, judged_.is_solid); });
     heightsAboveGround(part);
-    own_body_.learn(part, scan, judged_.is_echo, judged_.heights, clearance());
     loose_echoes_.loosen(part, scan.stamp, sights_.newest(), judged_.roles);
-    const SightView before = sights_.seenBefore(judged_.odom_from_points);
-    judgePlaces(before);
+    judged_.places.assign(judged_.points.size(), Place::kUnobserved);
     if (config_.objects.enabled) parts_.join(part, scan, sights_.newest(), sights_.turns(), judged_);
-    sights_.add(scan, judged_.is_solid);
+    const SightView before = sights_.seenBefore(judged_.odom_from_points);
+    workers_.both([&] { judgePlaces(before); }, [&] { learnAndConnect(part, scan); });
+    sights_.keep();
     const ScanSight now = sights_.newestSeenFrom(judged_.odom_from_points);
     if (config_.objects.enabled) {
       tracker_.predict(judged_, predictions_);
-      segmenter_.segment(judged_, predictions_, segments_);
+      segmenter_.segment(judged_, predictions_, segments_, workers_);
       parts_.relate(judged_, segments_);
-      tracker_.update(judged_, segments_, predictions_, now, verdicts_);
-      trimmer_.trim(judged_, segments_, verdicts_, proofs_);
+      tracker_.update(judged_, segments_, predictions_, now, verdicts_, workers_);
+      trimmer_.trim(judged_, segments_, verdicts_, proofs_, workers_);
       parts_.settle(segments_, verdicts_, judged_);
       proofs_.resize(judged_.points.size());
     } else {
@@ -129,12 +131,23 @@ class EvidenceDetector : public Detector {
   }
 
  private:
-  void enterPoints(double stamp) {
+  /// Every frame once: in voxels, in metres, and what lies between them and the odometry. The own body takes part in
+  /// nothing.
+  void enter(const Scan& scan) {
     const GridWindow& window = places_.window();
-    judged_.stamp = stamp;
+    window.beginScan(scan, in_voxels_);
+    judged_.stamp = scan.stamp;
     judged_.odom_from_points = window.odomFromWindow();
     judged_.sensor = in_voxels_.origin * static_cast<float>(window.voxelSize());
-    placePoints(window, in_voxels_, judged_.points, judged_.is_echo);
+    resizeTo(judged_.points, scan.echoes.size());
+    resizeTo(judged_.is_echo, scan.echoes.size());
+    resizeTo(judged_.is_solid, scan.echoes.size());
+    forEachStretch(workers_, scan.echoes.size(), [&](std::size_t first, std::size_t last) {
+      window.enterSome(scan, first, last, in_voxels_);
+      placeSomePoints(window, in_voxels_, first, last, judged_.points, judged_.is_echo);
+      std::copy_n(judged_.is_echo.data() + first, last - first, judged_.is_solid.data() + first);
+      own_body_.leaveOut(scan, first, last, judged_.is_solid);
+    });
   }
 
   /// Whether hardly an echo in the region lies on what was found, or many lie beneath it: then somebody has removed the
@@ -146,7 +159,7 @@ class EvidenceDetector : public Detector {
     }
     for (std::size_t i = 0; i < judged_.points.size(); i += options_.ground_stride) {
       if (in_voxels_.inside[i] == 0) continue;
-      const float height = judged_.heights[i];
+      const float height = ground_.heightOfEcho(i, judged_.points[i].z());
       ++ground_now_.inside;
       ground_now_.beneath += height < -options_.ground_roughness ? 1U : 0U;
       ground_now_.on += std::abs(height) <= options_.ground_roughness ? 1U : 0U;
@@ -158,47 +171,52 @@ class EvidenceDetector : public Detector {
 
   float clearance() const { return static_cast<float>(config_.evidence.ground_clearance); }
 
-  /// The own body takes part in nothing.
-  void leaveOutTheBody(const Scan& scan) {
-    resizeTo(judged_.is_solid, judged_.is_echo.size());
-    std::copy(judged_.is_echo.begin(), judged_.is_echo.end(), judged_.is_solid.begin());
-    own_body_.leaveOut(scan, judged_.is_solid);
+  void estimateGround(TurnPart part) {
+    if (!config_.evidence.ground) return;
+    ground_.estimate(part, judged_.odom_from_points.translation(), judged_.sensor, judged_.points, judged_.is_solid);
   }
 
   /// Ground: the height of every echo, and so its role in clusters.
   void heightsAboveGround(TurnPart part) {
-    const bool enabled = config_.evidence.ground;
-    judged_.has_ground = enabled;
+    judged_.has_ground = config_.evidence.ground;
+    lacks_ground_ = judged_.has_ground && isGroundMissing(part);
     resizeTo(judged_.heights, judged_.points.size());
-    if (enabled) {
-      ground_.estimate(part, judged_.odom_from_points.translation(), judged_.sensor, judged_.points, judged_.is_solid);
-      ground_.heightsOf(judged_.points, judged_.heights);
-      lacks_ground_ = isGroundMissing(part);
-      if (lacks_ground_) {
-        for (float& height : judged_.heights) height += clearance();  // nothing is on the ground
+    resizeTo(judged_.roles, judged_.points.size());
+    forEachStretch(workers_, judged_.points.size(), [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        judged_.heights[i] = heightOf(i);
+        judged_.roles[i] = roleOf(i, judged_.heights[i]);
       }
-    }
-    judged_.roles.assign(judged_.points.size(), ClusterRole::kNone);
-    for (std::size_t i = 0; i < judged_.points.size(); ++i) {
-      // Without the step there is no ground to stand above: heights are the window's.
-      if (!enabled) judged_.heights[i] = judged_.points[i].z();
-      const float height = judged_.heights[i];
-      if (in_voxels_.inside[i] == 0 || judged_.is_solid[i] == 0) continue;
-      const bool is_above = !enabled || lacks_ground_ || height > clearance();
-      if (is_above) {
-        judged_.roles[i] = ClusterRole::kConnects;
-      } else if (height > options_.lowest_of_objects) {
-        judged_.roles[i] = ClusterRole::kFollows;
-      }
-    }
+    });
+  }
+
+  float heightOf(std::size_t i) const {
+    const float z = judged_.points[i].z();
+    // Without the step there is no ground to stand above: heights are the window's.
+    if (!judged_.has_ground) return z;
+    const float height = ground_.heightOfEcho(i, z);
+    return lacks_ground_ ? height + clearance() : height;  // nothing is on the ground
+  }
+
+  ClusterRole roleOf(std::size_t i, float height) const {
+    if (in_voxels_.inside[i] == 0 || judged_.is_solid[i] == 0) return ClusterRole::kNone;
+    const bool is_above = !judged_.has_ground || lacks_ground_ || height > clearance();
+    if (is_above) return ClusterRole::kConnects;
+    return height > options_.lowest_of_objects ? ClusterRole::kFollows : ClusterRole::kNone;
+  }
+
+  /// What needs the roles but not the places.
+  void learnAndConnect(TurnPart part, const Scan& scan) {
+    if (config_.objects.enabled) segmenter_.connect(judged_);
+    own_body_.learn(part, scan, judged_.is_echo, judged_.heights, clearance());
   }
 
   /// Free evidence, careful sight, birth age, neighbourhood: asked of the scans before this one.
   void judgePlaces(const SightView& before) {
-    judged_.places.assign(judged_.points.size(), Place::kUnobserved);
-    for (std::size_t i = 0; i < judged_.points.size(); ++i) {
+    const std::size_t own = judged_.own();
+    for (std::size_t i = 0; i < own; ++i) {
       const std::size_t later = i + kPrefetchAhead;
-      const bool will_be_asked = later < judged_.points.size() && judged_.roles[later] == ClusterRole::kConnects;
+      const bool will_be_asked = later < own && judged_.roles[later] == ClusterRole::kConnects;
       if (will_be_asked) places_.expect(in_voxels_.echoes[later]);
       if (judged_.roles[i] != ClusterRole::kConnects) continue;
       judged_.places[i] = places_.judge(in_voxels_.echoes[i], judged_.points[i], clock_, before);
@@ -218,17 +236,20 @@ class EvidenceDetector : public Detector {
   void write(EchoLabels& labels) const {
     labels.assign(judged_.points.size());
     const bool is_first_scan = clock_.scan() == 1;  // nothing is known yet
-    for (std::size_t i = 0; i < judged_.points.size(); ++i) {
-      const bool is_moving = proofs_[i] != Proof::kNone;
-      const bool is_ground = judged_.roles[i] != ClusterRole::kConnects;
-      const bool is_known = in_voxels_.inside[i] != 0 && (is_ground || judged_.places[i] != Place::kUnobserved);
-      labels.dynamic[i] = is_moving ? 1 : 0;
-      labels.observed[i] = is_moving || (is_known && !is_first_scan) ? 1 : 0;
-    }
+    forEachStretch(workers_, judged_.points.size(), [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        const bool is_moving = proofs_[i] != Proof::kNone;
+        const bool is_ground = judged_.roles[i] != ClusterRole::kConnects;
+        const bool is_known = in_voxels_.inside[i] != 0 && (is_ground || judged_.places[i] != Place::kUnobserved);
+        labels.dynamic[i] = is_moving ? 1 : 0;
+        labels.observed[i] = is_moving || (is_known && !is_first_scan) ? 1 : 0;
+      }
+    });
   }
 
   Config config_;
   EvidenceDetectorOptions options_;
+  Workers workers_;
   StreamGuard guard_;
   PlaceJudge places_;
   ScanClock clock_;

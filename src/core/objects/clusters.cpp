@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/grid/line_of_sight.h"
 
@@ -9,14 +10,15 @@ namespace donex {
 
 Clusters::Clusters(double reach, const Options& options)
     : options_(options),
+      per_cell_(static_cast<float>(1.0 / options.cell)),
       width_(widthOf(reach, options.cell)),
       layers_(static_cast<int>(std::ceil(options.height / options.cell)) + 1),
       column_at_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(width_), kNone) {}
 
 int Clusters::widthOf(double reach, double cell) { return 2 * static_cast<int>(std::ceil(reach / cell)) + 1; }
 
-int& Clusters::makeCell(int x, int y, int z) {
-  int& column = column_at_[columnOf(x, y)];
+int& Clusters::makeCell(std::size_t x_y, int z) {
+  int& column = column_at_[x_y];
   if (column == kNone) {
     column = static_cast<int>(cell_in_column_.size()) / layers_;
     cell_in_column_.resize(cell_in_column_.size() + static_cast<std::size_t>(layers_), kNone);
@@ -25,69 +27,107 @@ int& Clusters::makeCell(int x, int y, int z) {
 }
 
 void Clusters::connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
-                       const std::vector<float>& heights, const std::vector<ClusterRole>& roles) {
-  fill(sensor, echoes, heights, roles);
+                       const std::vector<float>& heights, const std::vector<ClusterRole>& roles,
+                       const Workers& workers) {
+  constexpr std::size_t kCells = 512;  // far ones have more neighbours to look at
+  findColumns(sensor, echoes, heights, roles, workers);
+  fill(heights, roles);
   attachLowEchoes();
-  for (int cell = 0; cell < static_cast<int>(cells_.size()); ++cell) join(cell);
+  const auto join_some = [&](std::size_t first, std::size_t last) {
+    for (std::size_t cell = first; cell < last; ++cell) join(static_cast<int>(cell));
+  };
+  is_shared_ = workers.threads() > 1;
+  forEachStretch(workers, cells_.size(), join_some, kCells);
   number();
   for (const Cell& cell : cells_) column_at_[columnOf(cell.x, cell.y)] = kNone;
 }
 
-void Clusters::fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
-                    const std::vector<float>& heights, const std::vector<ClusterRole>& roles) {
-  const auto per_cell = static_cast<float>(1.0 / options_.cell);
+/// Of all echoes that take part.
+void Clusters::findColumns(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
+                           const std::vector<float>& heights, const std::vector<ClusterRole>& roles,
+                           const Workers& workers) {
   const auto highest = static_cast<float>(options_.height);
+  of_.resize(echoes.size());
+  const auto column_of = [&](std::size_t i) {
+    const bool takes_part = roles[i] == ClusterRole::kConnects || roles[i] == ClusterRole::kFollows;
+    const bool in_height = takes_part && heights[i] >= 0.0F && heights[i] <= highest;
+    if (!in_height) return int{kNone};
+    const int x = floorToInt((echoes[i].x() - sensor.x()) * per_cell_) + width_ / 2;
+    const int y = floorToInt((echoes[i].y() - sensor.y()) * per_cell_) + width_ / 2;
+    const bool in_square = x >= 0 && x < width_ && y >= 0 && y < width_;
+    return in_square ? static_cast<int>(columnOf(x, y)) : int{kNone};
+  };
+  forEachStretch(workers, echoes.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) of_[i] = column_of(i);
+  });
+}
+
+/// Cells are numbered in the order of their first echoes.
+void Clusters::fill(const std::vector<float>& heights, const std::vector<ClusterRole>& roles) {
   cells_.clear();
   cell_in_column_.clear();
   low_echoes_.clear();
-  of_.assign(echoes.size(), kNone);
-  for (std::size_t i = 0; i < echoes.size(); ++i) {
-    const bool takes_part = roles[i] == ClusterRole::kConnects || roles[i] == ClusterRole::kFollows;
-    const bool in_height = takes_part && heights[i] >= 0.0F && heights[i] <= highest;
-    if (!in_height) continue;
-    const int x = floorToInt((echoes[i].x() - sensor.x()) * per_cell) + width_ / 2;
-    const int y = floorToInt((echoes[i].y() - sensor.y()) * per_cell) + width_ / 2;
-    const int z = static_cast<int>(heights[i] * per_cell);
-    if (x < 0 || x >= width_ || y < 0 || y >= width_) continue;
+  for (std::size_t i = 0; i < of_.size(); ++i) {
+    const int column = of_[i];
+    if (column == kNone) continue;
     if (roles[i] == ClusterRole::kFollows) {
-      low_echoes_.push_back({static_cast<int>(i), x, y});
+      low_echoes_.push_back({static_cast<int>(i), column});
+      of_[i] = kNone;
       continue;
     }
-    int& cell = makeCell(x, y, z);
+    const int z = static_cast<int>(heights[i] * per_cell_);
+    int& cell = makeCell(static_cast<std::size_t>(column), z);
     if (cell == kNone) {
       cell = static_cast<int>(cells_.size());
-      cells_.push_back({x, y, z, cell});
+      cells_.push_back({column % width_, column / width_, z, cell});
     }
     of_[i] = cell;
   }
 }
 
 void Clusters::attachLowEchoes() {
-  for (const auto& [echo, x, y] : low_echoes_) {
+  for (const auto& [echo, column] : low_echoes_) {
     for (int z = 0; z <= std::min(1, layers_ - 1) && of_[static_cast<std::size_t>(echo)] == kNone; ++z) {
-      of_[static_cast<std::size_t>(echo)] = cellAt(x, y, z);
+      of_[static_cast<std::size_t>(echo)] = cellAt(static_cast<std::size_t>(column), z);
     }
   }
 }
 
 int Clusters::rootOf(int cell) {
-  while (cells_[static_cast<std::size_t>(cell)].parent != cell) {
-    int& parent = cells_[static_cast<std::size_t>(cell)].parent;
-    parent = cells_[static_cast<std::size_t>(parent)].parent;
-    cell = parent;
+  for (int parent = parentOf(cell); parent != cell; parent = parentOf(cell)) {
+    const int above = parentOf(parent);
+    __atomic_store_n(&cells_[static_cast<std::size_t>(cell)].parent, above, __ATOMIC_RELAXED);
+    cell = above;
   }
   return cell;
 }
 
+/// The root of both from now on. The larger root goes below the smaller one, so that no order makes a ring.
+int Clusters::unite(int a, int b) {
+  while (true) {
+    a = rootOf(a);
+    b = rootOf(b);
+    if (a == b) return a;
+    if (a > b) std::swap(a, b);
+    int& parent = cells_[static_cast<std::size_t>(b)].parent;
+    int still_root = b;
+    if (!is_shared_) {
+      parent = a;  // one thread need not wait for the memory of others
+      return a;
+    }
+    if (__atomic_compare_exchange_n(&parent, &still_root, a, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) return a;
+  }
+}
+
 void Clusters::join(int cell) {
-  const Cell here = cells_[static_cast<std::size_t>(cell)];
+  const Cell& here = cells_[static_cast<std::size_t>(cell)];
   const double cells_away = std::hypot(here.x - width_ / 2, here.y - width_ / 2);
   const int across = std::max(1, static_cast<int>(std::ceil(cells_away * options_.across_angle)));
   const int up = std::max(1, static_cast<int>(std::ceil(cells_away * options_.up_angle)));
   const int last_z = std::min(here.z + up, layers_ - 1);
   const int first_x = std::max(here.x - across, 0), last_x = std::min(here.x + across, width_ - 1);
   const int first_y = std::max(here.y - across, 0), last_y = std::min(here.y + across, width_ - 1);
-  const int root = rootOf(cell);
+  int root = rootOf(cell);
   // The half of the neighbourhood behind this cell finds it from there.
   for (int y = first_y; y <= last_y; ++y) {
     for (int x = first_x; x <= last_x; ++x) {
@@ -95,8 +135,8 @@ void Clusters::join(int cell) {
       if (column == kNone) continue;
       const int* cell_at = cell_in_column_.data() + static_cast<std::ptrdiff_t>(column) * layers_;
       for (int z = here.z; z <= last_z; ++z) {
-        const bool joins = cell_at[z] != kNone && cells_[static_cast<std::size_t>(cell_at[z])].parent != root;
-        if (joins) cells_[static_cast<std::size_t>(rootOf(cell_at[z]))].parent = root;
+        const bool joins = cell_at[z] != kNone && parentOf(cell_at[z]) != root;
+        if (joins) root = unite(root, cell_at[z]);
       }
     }
   }

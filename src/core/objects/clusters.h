@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/evidence/judged_scan.h"
+#include "core/grid/workers.h"
 #include "donex/config.h"
 
 namespace donex {
@@ -26,7 +27,8 @@ class Clusters {
 
   /// `echoes` [m] in a frame whose z points up, `heights` above ground [m], one per echo.
   void connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
-               const std::vector<float>& heights, const std::vector<ClusterRole>& roles);
+               const std::vector<float>& heights, const std::vector<ClusterRole>& roles,
+               const Workers& workers = Workers::alone());
 
   static constexpr int kNone = -1;
   /// Cluster of an echo, 0 to count() - 1, or kNone.
@@ -47,9 +49,10 @@ class Clusters {
     int parent;  ///< union-find over cells
   };
 
-  /// Number of the cell, or kNone. Columns are dense, their cells are held only where there is one.
-  int cellAt(int x, int y, int z) const {
-    const int column = column_at_[columnOf(x, y)];
+  /// Number of the cell, or kNone. Columns are dense, their cells are held only where there is one. `x_y`: see
+  /// columnOf.
+  int cellAt(std::size_t x_y, int z) const {
+    const int column = column_at_[x_y];
     return column == kNone ? kNone : cell_in_column_[placeOf(column, z)];
   }
   std::size_t columnOf(int x, int y) const {
@@ -59,21 +62,29 @@ class Clusters {
     return static_cast<std::size_t>(column) * static_cast<std::size_t>(layers_) + static_cast<std::size_t>(z);
   }
   static int widthOf(double reach, double cell);
-  int& makeCell(int x, int y, int z);
+  int& makeCell(std::size_t x_y, int z);
+  /// Others may join cells at the same time: what is read is old at worst, and a parent's parent serves as well.
+  int parentOf(int cell) const {
+    return __atomic_load_n(&cells_[static_cast<std::size_t>(cell)].parent, __ATOMIC_RELAXED);
+  }
   int rootOf(int cell);
-  void fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
-            const std::vector<float>& heights, const std::vector<ClusterRole>& roles);
+  int unite(int a, int b);
+  void findColumns(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
+                   const std::vector<float>& heights, const std::vector<ClusterRole>& roles, const Workers& workers);
+  void fill(const std::vector<float>& heights, const std::vector<ClusterRole>& roles);
   void attachLowEchoes();
   void join(int cell);
   void number();
 
   Options options_;
+  float per_cell_;  ///< [1/m]
   int width_, layers_;
+  bool is_shared_ = false;           ///< several threads join cells
   std::vector<int> column_at_;       ///< by x, y: number of the column, or kNone
   std::vector<int> cell_in_column_;  ///< by column, z: number of the cell, or kNone
   std::vector<Cell> cells_;
-  std::vector<int> of_;
-  std::vector<std::array<int, 3>> low_echoes_;  ///< echo, x, y
+  std::vector<int> of_;  ///< by echo: where its column is, then its cell, and in the end its cluster
+  std::vector<std::array<int, 2>> low_echoes_;  ///< echo, and where its column is
   std::vector<int> number_of_root_;
   std::vector<std::size_t> echoes_in_;  ///< by cluster
 };

@@ -23,7 +23,7 @@ void ObjectTracker::predict(const JudgedScan& scan, Predictions& predictions) co
 }
 
 void ObjectTracker::update(const JudgedScan& scan, const Segments& segments, const Predictions& predictions,
-                           const ScanSight& now, Verdicts& verdicts) {
+                           const ScanSight& now, Verdicts& verdicts, const Workers& workers) {
   objects_.clear();
   verdicts.assign(segments.size(), Verdict{});
   sensor_ = scan.odom_from_points * scan.sensor.cast<double>();
@@ -32,13 +32,20 @@ void ObjectTracker::update(const JudgedScan& scan, const Segments& segments, con
   match(scan.stamp, segments);
   const MotionTests tests(scan, now, test_options_);
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    const Segment& segment = segments[i];
-    if (rules_.isTooLong(segment)) continue;
-    Track& track = trackOf(i, scan.stamp, segment);
-    if (config_.motion) testMotion(track, tests, scan.stamp, segment);
-    verdicts[i] = decide(track, tests, scan.stamp, segment);
-    if (config_.motion) track.trace = traces_.leave(scan, segment, track.trace);
-    if (track.ever_dynamic) describe(track, verdicts[i].proof, scan, segment);
+    if (!rules_.isTooLong(segments[i])) followOn(i, scan.stamp, segments[i]);
+  }
+  // Each has a track of its own, and asks for traces of earlier scans.
+  const auto judge = [&](std::size_t i) {
+    if (rules_.isTooLong(segments[i])) return;
+    if (config_.motion) testMotion(trackOf(i), tests, scan.stamp, segments[i]);
+    verdicts[i] = decide(trackOf(i), tests, scan.stamp, segments[i]);
+  };
+  workers.each(segments.size(), std::ref(judge));
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    if (rules_.isTooLong(segments[i])) continue;
+    Track& track = trackOf(i);
+    if (config_.motion) track.trace = traces_.leave(scan, segments[i], track.trace);
+    if (track.ever_dynamic) describe(track, verdicts[i].proof, scan, segments[i]);
   }
   complete(segments, predictions, verdicts);
   const auto is_lost = [&](const Followed& followed) {
@@ -56,21 +63,22 @@ ObjectTracker::Track ObjectTracker::newTrack(std::uint32_t id, double stamp, con
   return track;
 }
 
-ObjectTracker::Track& ObjectTracker::trackOf(std::size_t segment_index, double stamp, const Segment& segment) {
-  const int known = track_of_[segment_index];
-  if (known < 0) {
+/// Sees the track of a segment there, or begins one.
+void ObjectTracker::followOn(std::size_t segment_index, double stamp, const Segment& segment) {
+  int& track = track_of_[segment_index];
+  if (track < 0) {
+    track = static_cast<int>(tracks_.size());
     tracks_.push_back({newTrack(next_id_++, stamp, segment), {}, turn_});
-    return tracks_.back().now;
+    return;
   }
-  Followed& followed = tracks_[static_cast<std::size_t>(known)];
+  Followed& followed = tracks_[static_cast<std::size_t>(track)];
   if (isNewcomer(followed)) {
     followed.now = newTrack(followed.now.id, stamp, segment);
-    return followed.now;
+    return;
   }
   followed.before = beforeTurn(followed);
   followed.turn = turn_;
   follow(followed.now = *followed.before, stamp, segment);
-  return followed.now;
 }
 
 void ObjectTracker::match(double stamp, const Segments& segments) {

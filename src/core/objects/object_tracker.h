@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/grid/workers.h"
 #include "core/objects/motion_tests.h"
 #include "donex/object.h"
 
@@ -44,7 +45,7 @@ class ObjectTracker {
   /// Follows the segments of a scan and decides about each. `predictions` are those for the scan; `now`: what the scan
   /// sees, asked in its points.
   void update(const JudgedScan& scan, const Segments& segments, const Predictions& predictions, const ScanSight& now,
-              Verdicts& verdicts);
+              Verdicts& verdicts, const Workers& workers = Workers::alone());
 
   /// Objects of the last scan that move, or moved since they are followed.
   const std::vector<Object>& objects() const { return objects_; }
@@ -103,7 +104,8 @@ class ObjectTracker {
   const Track& beforeTurn(const Followed& followed) const {
     return followed.turn == turn_ ? *followed.before : followed.now;
   }
-  Track& trackOf(std::size_t segment_index, double stamp, const Segment& segment);
+  void followOn(std::size_t segment_index, double stamp, const Segment& segment);
+  Track& trackOf(std::size_t segment_index) { return tracks_[static_cast<std::size_t>(track_of_[segment_index])].now; }
   void follow(Track& track, double stamp, const Segment& segment) const;
   bool isBelieved(const Sign& sign, double stamp) const { return sign.seenFor(stamp) >= options_.believed_after; }
   void testMotion(Track& track, const MotionTests& tests, double stamp, const Segment& segment) const;
@@ -121,7 +123,7 @@ class ObjectTracker {
   std::vector<Followed> tracks_;
   std::vector<Pair> pairs_;
   std::vector<int> claim_of_;  ///< by segment: the track that it goes on with, or -1
-  std::vector<int> track_of_;  ///< by segment, -1 where it is followed for the first time
+  std::vector<int> track_of_;  ///< by segment, -1 where it has none yet
   std::vector<Object> objects_;
   std::uint32_t next_id_ = 1;
   std::uint32_t turn_ = 0;

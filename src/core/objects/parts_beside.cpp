@@ -132,7 +132,8 @@ void PartsBeside::keep(const SightPixels& pixels, std::uint8_t sensor, const Jud
     if (!takes_part || pixels.row(i) < 0) continue;
     const auto column = static_cast<std::uint16_t>(pixels.column(i));
     cloud.columns.set(column);
-    cloud.echoes.push_back({kept_from_points * judged.points[i], judged.heights[i], 0, column, role, judged.places[i]});
+    cloud.echoes.push_back(
+        {kept_from_points * judged.points[i], judged.heights[i], 0, column, role, Place::kUnobserved});
     kept_of_[i] = &cloud.echoes.back();  // stays there: there is room for all of them
   }
   clouds_.push_back(std::move(cloud));
@@ -207,6 +208,9 @@ void PartsBeside::settle(const Segments& segments, const Verdicts& verdicts, Jud
     for (const std::uint32_t echo : segments[i].echoes) {
       if (kept_of_[echo] != nullptr) kept_of_[echo]->object = verdicts[i].object;
     }
+  }
+  for (std::size_t i = 0; i < judged.own(); ++i) {
+    if (kept_of_[i] != nullptr) kept_of_[i]->place = judged.places[i];
   }
   for (Cloud& cloud : clouds_) {
     if (cloud.is_judged) listObjects(cloud);

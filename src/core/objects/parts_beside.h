@@ -24,13 +24,14 @@ class PartsBeside {
   explicit PartsBeside(const PartsBesideOptions& options = {});
 
   /// Adds to the entries of a cloud those of the same sensor's earlier clouds of the turn that lie beside it: with an
-  /// object that reaches there, all of its echoes. `pixels`: the cloud's directions; `turns` has taken it.
+  /// object that reaches there, all of its echoes. `pixels`: the cloud's directions; `turns` has taken it. The cloud's
+  /// own places need not be judged before settle().
   void join(TurnPart part, const Scan& scan, const SightPixels& pixels, const Turns& turns, JudgedScan& judged);
 
   /// Says which object each segment goes on with, and whether more of it may come.
   void relate(const JudgedScan& judged, Segments& segments);
 
-  /// Takes the others' entries off again, and remembers what objects the echoes belong to.
+  /// Takes the others' entries off again, and remembers the echoes' places and what objects they belong to.
   void settle(const Segments& segments, const Verdicts& verdicts, JudgedScan& judged);
 
   void reset();

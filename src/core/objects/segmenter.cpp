@@ -14,10 +14,10 @@ constexpr std::size_t kTooSmall = std::numeric_limits<std::size_t>::max();
 Segmenter::Segmenter(double reach, const ObjectConfig& config, const SegmenterOptions& options)
     : config_(config), options_(options), rules_(config), clusters_(reach, clustersOf(config)) {}
 
-void Segmenter::segment(const JudgedScan& scan, const Predictions& predictions, Segments& segments) {
+void Segmenter::segment(const JudgedScan& scan, const Predictions& predictions, Segments& segments,
+                        const Workers& workers) {
   segments.clear();
-  clusters_.connect(scan.sensor, scan.points, scan.heights, scan.roles);
-  append(scan, segments);
+  append(scan, segments, workers);
   const std::size_t clusters = segments.size();
   for (std::size_t i = 0; i < clusters; ++i) {
     for (const Prediction& object : predictions) cutOut(scan, object, i, segments);
@@ -33,11 +33,11 @@ void Segmenter::segment(const JudgedScan& scan, const Predictions& predictions, 
     }
   }
   if (!segments.removeIf(is_mixed)) return;
-  clusters_.connect(scan.sensor, scan.points, scan.heights, roles_);
-  append(scan, segments);
+  clusters_.connect(scan.sensor, scan.points, scan.heights, roles_, workers);
+  append(scan, segments, workers);
 }
 
-void Segmenter::append(const JudgedScan& scan, Segments& segments) {
+void Segmenter::append(const JudgedScan& scan, Segments& segments, const Workers& workers) {
   const std::size_t first = segments.size();
   segment_of_.assign(static_cast<std::size_t>(clusters_.count()), kTooSmall);
   const int of_this_part = clusters_.countWithin(scan.own());  // others were judged when their parts came
@@ -51,7 +51,8 @@ void Segmenter::append(const JudgedScan& scan, Segments& segments) {
     const std::size_t segment = segment_of_[static_cast<std::size_t>(clusters_.of(i))];
     if (segment != kTooSmall) segments[segment].echoes.push_back(static_cast<std::uint32_t>(i));
   }
-  for (std::size_t i = first; i < segments.size(); ++i) describeEchoes(scan, segments[i]);
+  const auto describe = [&](std::size_t i) { describeEchoes(scan, segments[first + i]); };
+  workers.each(segments.size() - first, std::ref(describe));
 }
 
 void Segmenter::cutOut(const JudgedScan& scan, const Prediction& object, std::size_t whole, Segments& segments) const {

@@ -20,17 +20,21 @@ class Segmenter {
   /// A square of `reach` [m] around the sensor.
   Segmenter(double reach, const ObjectConfig& config, const SegmenterOptions& options = {});
 
+  /// Finds the scan's clusters. What their places say is not asked yet; segment() follows.
+  void connect(const JudgedScan& scan) { clusters_.connect(scan.sensor, scan.points, scan.heights, scan.roles); }
+
   /// The scan's clusters, one object each as far as can be told:
   ///  - what is predicted and has run into something larger is cut out of it;
   ///  - a cluster that is new only in part (a pedestrian at a wall) is replaced by its parts that are not settled.
-  void segment(const JudgedScan& scan, const Predictions& predictions, Segments& segments);
+  void segment(const JudgedScan& scan, const Predictions& predictions, Segments& segments,
+               const Workers& workers = Workers::alone());
 
   std::size_t memoryBytes() const;
   /// What memoryBytes will be, for scans of so many echoes [bytes], about.
   static double bytesFor(double reach, const ObjectConfig& config, double echoes);
 
  private:
-  void append(const JudgedScan& scan, Segments& segments);
+  void append(const JudgedScan& scan, Segments& segments, const Workers& workers);
   void cutOut(const JudgedScan& scan, const Prediction& object, std::size_t whole, Segments& segments) const;
   bool isMixed(const Segment& segment, const Predictions& predictions) const;
 

@@ -7,9 +7,9 @@ Trimmer::Trimmer(double reach, const ObjectConfig& config, const TrimmerOptions&
     : clusters_(reach, clustersOf(config, options.finer_cells)) {}
 
 void Trimmer::trim(const JudgedScan& scan, const Segments& segments, const Verdicts& verdicts,
-                   std::vector<Proof>& proofs) {
+                   std::vector<Proof>& proofs, const Workers& workers) {
   proofs.assign(scan.points.size(), Proof::kNone);
-  const bool any_parts = findParts(scan, segments, verdicts);
+  const bool any_parts = findParts(scan, segments, verdicts, workers);
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const Verdict& verdict = verdicts[i];
     if (!verdict.moves()) continue;
@@ -27,7 +27,8 @@ void Trimmer::trim(const JudgedScan& scan, const Segments& segments, const Verdi
 }
 
 /// False where nothing is to be trimmed.
-bool Trimmer::findParts(const JudgedScan& scan, const Segments& segments, const Verdicts& verdicts) {
+bool Trimmer::findParts(const JudgedScan& scan, const Segments& segments, const Verdicts& verdicts,
+                        const Workers& workers) {
   bool any = false;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     if (!isTrimmed(segments[i], verdicts[i])) continue;
@@ -36,7 +37,7 @@ bool Trimmer::findParts(const JudgedScan& scan, const Segments& segments, const 
     for (const std::uint32_t echo : segments[i].echoes) roles_[echo] = scan.roles[echo];
   }
   if (!any) return false;
-  clusters_.connect(scan.sensor, scan.points, scan.heights, roles_);
+  clusters_.connect(scan.sensor, scan.points, scan.heights, roles_, workers);
   parts_.assign(static_cast<std::size_t>(clusters_.count()), Part{});
   for (std::size_t i = 0; i < segments.size(); ++i) {
     if (isTrimmed(segments[i], verdicts[i])) count(scan, segments[i]);

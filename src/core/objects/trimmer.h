@@ -21,7 +21,8 @@ class Trimmer {
   Trimmer(double reach, const ObjectConfig& config, const TrimmerOptions& options = {});
 
   /// Writes the proof of every echo that moves with its segment, and kNone for all others; one entry per echo.
-  void trim(const JudgedScan& scan, const Segments& segments, const Verdicts& verdicts, std::vector<Proof>& proofs);
+  void trim(const JudgedScan& scan, const Segments& segments, const Verdicts& verdicts, std::vector<Proof>& proofs,
+            const Workers& workers = Workers::alone());
 
   std::size_t memoryBytes() const;
   /// What memoryBytes will be, for scans of so many echoes [bytes], about.
@@ -36,7 +37,7 @@ class Trimmer {
   static bool isTrimmed(const Segment& segment, const Verdict& verdict) {
     return verdict.moves() && segment.new_echoes > 0;
   }
-  bool findParts(const JudgedScan& scan, const Segments& segments, const Verdicts& verdicts);
+  bool findParts(const JudgedScan& scan, const Segments& segments, const Verdicts& verdicts, const Workers& workers);
   void count(const JudgedScan& scan, const Segment& segment);
   const Part* partOf(std::uint32_t echo) const;
   std::size_t largestNewPart(const Segment& segment) const;

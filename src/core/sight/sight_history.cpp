@@ -11,10 +11,10 @@ constexpr double kSamePose = 1e-5;  // as isApprox has it: a part needs no new p
 
 }  // namespace
 
-TurnPart SightHistory::arrive(const Scan& scan, const std::vector<std::uint8_t>& is_echo) {
-  pixels_.project(scan.echoes, is_echo);
+TurnPart SightHistory::arrive(const Scan& scan, const std::vector<std::uint8_t>& is_echo, const Workers& workers) {
+  pixels_.project(scan.echoes, is_echo, workers);
   newest_mounting_ = scan.base_from_sensor;
-  const TurnPart part = turns_.arrive(scan, pixels_);
+  const TurnPart part = turns_.arrive(scan, pixels_, workers);
   if (part == TurnPart::kContinuing) return part;
   turn_began_ = scan.stamp;
   keeps_turn_ = kept_.empty() || scan.stamp >= kept_.back().stamp + 0.9 * spacing_;
@@ -22,13 +22,13 @@ TurnPart SightHistory::arrive(const Scan& scan, const std::vector<std::uint8_t>&
   return part;
 }
 
-void SightHistory::add(const Scan& scan, const std::vector<std::uint8_t>& is_echo) {
+void SightHistory::draw(const Scan& scan, const std::vector<std::uint8_t>& is_echo) {
   if (!keeps_turn_) return;
   Kept& kept = imageFor(scan);
   const Eigen::Isometry3d image_from_sensor = kept.sensor_from_odom * scan.odomFromSensor();
   const bool is_moved = !image_from_sensor.isApprox(Eigen::Isometry3d::Identity(), kSamePose);
-  if (is_moved) pixels_.project(scan.echoes, is_echo, image_from_sensor.cast<float>());
-  kept.image.add(pixels_, reading_, workspace_);
+  if (is_moved) in_image_.project(scan.echoes, is_echo, image_from_sensor.cast<float>());
+  kept.image.add(is_moved ? in_image_ : pixels_, reading_, workspace_);
 }
 
 /// The image of the scan's sensor in the present turn; where it has none yet its frame is that of the scan.
@@ -36,10 +36,16 @@ SightHistory::Kept& SightHistory::imageFor(const Scan& scan) {
   for (auto kept = kept_.rbegin(); kept != kept_.rend() && kept->turn == turn_; ++kept) {
     if (Turns::areOne(kept->base_from_sensor, scan.base_from_sensor)) return *kept;
   }
+  drawn_ = Kept{turn_began_, turn_, scan.base_from_sensor, scan.odomFromSensor().inverse(), newImage()};
+  return *drawn_;
+}
+
+void SightHistory::keep() {
+  if (!drawn_) return;
   forget(turn_began_ - length_);
   keepNoMoreThanAViewHolds();
-  kept_.push_back({turn_began_, turn_, scan.base_from_sensor, scan.odomFromSensor().inverse(), newImage()});
-  return kept_.back();
+  kept_.push_back(std::move(*drawn_));
+  drawn_.reset();
 }
 
 void SightHistory::keepNoMoreThanAViewHolds() {
@@ -131,13 +137,15 @@ SightView::Evidence SightView::ask(const Eigen::Vector3f& point, double since, i
 }
 
 double SightHistory::bytesFor(double length, double spacing, double echoes) {
-  const double images = length / spacing + 2.0;  // both ends count, and one more is on its way out
+  // Both ends count, one is on its way out, and one is drawn before that is forgotten.
+  const double images = length / spacing + 3.0;
   // Two images are asked for their single lines of sight as well.
   return (images + 2.0) * SightImage::answerBytes() + SightImage::workspaceBytes() + SightPixels::bytesFor(echoes);
 }
 
 std::size_t SightHistory::memoryBytes() const {
-  std::size_t bytes = kept_.capacity() * sizeof(Kept) + pixels_.memoryBytes() + workspace_.memoryBytes();
+  std::size_t bytes = kept_.capacity() * sizeof(Kept) + pixels_.memoryBytes() + in_image_.memoryBytes() +
+                      workspace_.memoryBytes() + turns_.memoryBytes();
   for (const Kept& kept : kept_) bytes += kept.image.memoryBytes();
   for (const SightImage& spare : spares_) bytes += spare.memoryBytes();
   return bytes;

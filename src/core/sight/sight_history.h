@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "core/sight/sight_image.h"
@@ -92,13 +93,20 @@ class SightHistory {
   SightHistory(double length, double spacing, float margin, const SightImage::Reading& reading)
       : length_(length), spacing_(spacing), margin_(margin), reading_(reading) {}
 
-  /// A cloud arrives; add() follows. Stamps never run backwards.
-  TurnPart arrive(const Scan& scan, const std::vector<std::uint8_t>& is_echo);
-  /// The directions of the cloud that arrived last, until it is added.
+  /// A cloud arrives; draw() and keep(), or add(), follow. Stamps never run backwards.
+  TurnPart arrive(const Scan& scan, const std::vector<std::uint8_t>& is_echo,
+                  const Workers& workers = Workers::alone());
+  /// The directions of the cloud that arrived last.
   const SightPixels& newest() const { return pixels_; }
   const Turns& turns() const { return turns_; }
-  /// Takes what the cloud saw that arrived last. Views made before are no longer valid.
-  void add(const Scan& scan, const std::vector<std::uint8_t>& is_echo);
+  /// Takes what the cloud saw that arrived last. Turns before the present one may be asked at the same time.
+  void draw(const Scan& scan, const std::vector<std::uint8_t>& is_echo);
+  /// From now on what was drawn is asked, too. Views made before are no longer valid.
+  void keep();
+  void add(const Scan& scan, const std::vector<std::uint8_t>& is_echo) {
+    draw(scan, is_echo);
+    keep();
+  }
 
   /// What the turns before the present one saw; to be asked in points whose frame lies in the odometry's like this.
   SightView seenBefore(const Eigen::Isometry3d& odom_from_points) const;
@@ -136,13 +144,15 @@ class SightHistory {
   float margin_;
   SightImage::Reading reading_;
   Turns turns_;
-  SightPixels pixels_;  ///< of the newest cloud
+  SightPixels pixels_;    ///< of the newest cloud
+  SightPixels in_image_;  ///< of a part that was not seen from where its turn's image is
   SightImage::Workspace workspace_;
   Eigen::Isometry3d newest_mounting_ = Eigen::Isometry3d::Identity();
   std::uint32_t turn_ = 0;   ///< of those that are kept
   double turn_began_ = 0.0;  ///< [s]
   bool keeps_turn_ = false;
   std::vector<Kept> kept_;          ///< oldest first
+  std::optional<Kept> drawn_;       ///< an image that the present cloud began
   std::vector<SightImage> spares_;  ///< storage for the next images
 };
 

@@ -21,9 +21,13 @@ DONEX_WIDE_LOOPS void projectAll(const Eigen::Vector3f* echoes, const std::uint8
 
 }  // namespace
 
-void SightPixels::project(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo) {
+void SightPixels::project(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo,
+                          const Workers& workers) {
   resize(echoes.size());
-  projectAll(echoes.data(), is_echo.data(), echoes.size(), columns_.data(), rows_.data(), ranges_.data());
+  forEachStretch(workers, echoes.size(), [&](std::size_t first, std::size_t last) {
+    projectAll(echoes.data() + first, is_echo.data() + first, last - first, columns_.data() + first,
+               rows_.data() + first, ranges_.data() + first);
+  });
 }
 
 void SightPixels::project(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo,

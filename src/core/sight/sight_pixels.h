@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "core/grid/storage.h"
+#include "core/grid/workers.h"
 #include "core/pi.h"
 
 namespace donex {
@@ -36,7 +37,8 @@ class SightPixels {
   static Pixel of(const Eigen::Vector3f& point) { return of(point.x(), point.y(), point.z()); }
 
   /// Takes the echoes [m] of a cloud; those with `is_echo` 0 are left out.
-  void project(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo);
+  void project(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo,
+               const Workers& workers = Workers::alone());
   /// The same in another frame.
   void project(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo,
                const Eigen::Isometry3f& frame_from_echoes);

@@ -12,8 +12,8 @@ constexpr std::size_t kRepeated = 4;               // one in so many columns see
 
 }  // namespace
 
-TurnPart Turns::arrive(const Scan& scan, const SightPixels& seen) {
-  newest_ = columnsOf(seen);
+TurnPart Turns::arrive(const Scan& scan, const SightPixels& seen, const Workers& workers) {
+  newest_ = columnsOf(seen, workers);
   const Columns& columns = newest_;
   Sensor* sensor = sensorAt(scan.base_from_sensor);
   const bool is_long = sensors_.empty() || scan.stamp - begin_ > kLongest;
@@ -55,10 +55,17 @@ Turns::Sensor* Turns::sensorAt(const Eigen::Isometry3d& base_from_sensor) {
   return sensor == sensors_.end() ? nullptr : &*sensor;
 }
 
-Turns::Columns Turns::columnsOf(const SightPixels& seen) {
+Turns::Columns Turns::columnsOf(const SightPixels& seen, const Workers& workers) {
+  in_stretch_.assign((seen.size() + kStretch - 1) / kStretch, Columns{});
+  forEachStretch(workers, seen.size(), [&](std::size_t first, std::size_t last) {
+    Columns& columns = in_stretch_[first / kStretch];
+    for (std::size_t i = first; i < last; ++i) {
+      if (seen.row(i) >= 0) columns[static_cast<std::size_t>(seen.column(i))] = 1;
+    }
+  });
   Columns columns{};
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (seen.row(i) >= 0) columns[static_cast<std::size_t>(seen.column(i))] = 1;
+  for (const Columns& some : in_stretch_) {
+    for (std::size_t c = 0; c < kColumns; ++c) columns[c] = std::max(columns[c], some[c]);
   }
   const auto first = static_cast<std::size_t>(std::find(columns.begin(), columns.end(), 1) - columns.begin());
   if (first == kColumns) return columns;

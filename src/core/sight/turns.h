@@ -23,7 +23,7 @@ enum class TurnPart {
 class Turns {
  public:
   /// Takes the next cloud. `seen`: its pixels in its own frame.
-  TurnPart arrive(const Scan& scan, const SightPixels& seen);
+  TurnPart arrive(const Scan& scan, const SightPixels& seen, const Workers& workers = Workers::alone());
   /// Whether two mountings are one sensor's.
   static bool areOne(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b);
   using Columns = std::array<std::uint8_t, SightPixels::kColumns>;  ///< 1 where they are looked at
@@ -37,6 +37,8 @@ class Turns {
     clouds_ = 0;
   }
 
+  std::size_t memoryBytes() const { return in_stretch_.capacity() * sizeof(Columns); }
+
   static constexpr double kLongest = 0.3;         ///< [s] what parts see in longer turns is not of one place any more
   static constexpr double kSamePlace = 0.05;      ///< [m] between two mountings of one sensor,
   static constexpr double kSameAxes = 0.02;       ///< [rad] and between their axes
@@ -49,12 +51,13 @@ class Turns {
     Columns looked;
   };
 
-  static Columns columnsOf(const SightPixels& seen);
+  Columns columnsOf(const SightPixels& seen, const Workers& workers);
   Sensor* sensorAt(const Eigen::Isometry3d& base_from_sensor);
 
   double begin_ = 0.0;      ///< [s]
   std::size_t clouds_ = 0;  ///< of the turn
   std::vector<Sensor> sensors_;
+  std::vector<Columns> in_stretch_;  ///< of the newest cloud: with an echo of that stretch
   Columns newest_{};
   std::size_t newest_sensor_ = 0;
 };

@@ -196,11 +196,10 @@ class GroundInParts {
       const TurnPart begins = turns_ == 0 ? TurnPart::kWhole : TurnPart::kFirst;
       ground_.estimate(part == 0 ? begins : TurnPart::kContinuing, origin, (sensor - origin).cast<float>(), echoes,
                        std::vector<std::uint8_t>(echoes.size(), 1));
-      std::vector<float> heights;
-      ground_.heightsOf(echoes, heights);
       for (std::size_t i = 0; i < echoes.size(); ++i) {
-        ASSERT_EQ(heights[i], ground_.heightOf(echoes[i]));
-        visit(Eigen::Vector3f(echoes[i] + origin.cast<float>()), heights[i]);
+        const float height = ground_.heightOfEcho(i, echoes[i].z());
+        ASSERT_EQ(height, ground_.heightOf(echoes[i]));
+        visit(Eigen::Vector3f(echoes[i] + origin.cast<float>()), height);
       }
     }
     ++turns_;
@@ -277,18 +276,16 @@ TEST(Ground, IsThatOfItsDefinition) {
   for (unsigned seed = 1; seed <= 24; ++seed) {
     const RandomScan scan(seed);
     ground.estimate(scan.sensor, scan.echoes, scan.is_echo);
-    std::vector<float> heights;
-    ground.heightsOf(scan.echoes, heights);
-    ASSERT_EQ(heights.size(), scan.echoes.size());
     oracle::GroundMap map(kReach, scan.sensor, scan.echoes, scan.is_echo);
-    for (std::size_t i = 0; i < heights.size(); ++i) {
+    for (std::size_t i = 0; i < scan.echoes.size(); ++i) {
       if (scan.is_echo[i] == 0) continue;
+      const float height = ground.heightOfEcho(i, scan.echoes[i].z());
       const double expected = map.heightOf(scan.echoes[i]);
       outside += std::isinf(expected) ? 1 : 0;
-      ASSERT_EQ(std::isinf(heights[i]), std::isinf(expected));
-      ASSERT_EQ(heights[i], ground.heightOf(scan.echoes[i]));
+      ASSERT_EQ(std::isinf(height), std::isinf(expected));
+      ASSERT_EQ(height, ground.heightOf(scan.echoes[i]));
       if (std::isinf(expected)) continue;
-      ASSERT_NEAR(heights[i], expected, 1e-3) << "seed " << seed << " echo " << i;
+      ASSERT_NEAR(height, expected, 1e-3) << "seed " << seed << " echo " << i;
     }
     continued += map.continued();
     interrupted += map.interrupted();

@@ -1,5 +1,6 @@
 // After the first scans the paper's rule allocates nothing more, and takes the memory that was said before.
 #include <algorithm>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -63,7 +64,14 @@ TEST_P(SteadyState, TakesWhatWasSaid) {
   }
 }
 
-class DefaultSteadyState : public ::testing::TestWithParam<Method> {};
+class DefaultSteadyState : public ::testing::TestWithParam<std::tuple<Method, int>> {
+ protected:
+  static Config config() {
+    Config config;
+    std::tie(config.method, config.threads) = GetParam();
+    return config;
+  }
+};
 
 /// Scans of a crossing, `beams` high.
 std::vector<Scan> crossing(int beams, double duration) {
@@ -78,10 +86,8 @@ std::vector<Scan> crossing(int beams, double duration) {
 
 /// Nothing is allocated on a stretch of road like one that was driven before, objects and all.
 TEST_P(DefaultSteadyState, AllocatesNothingAScan) {
-  Config config;
-  config.method = GetParam();
   const std::vector<Scan> scans = crossing(32, 3.0);
-  const auto detector = makeDetector(config);
+  const auto detector = makeDetector(config());
   EchoLabels labels;
   std::size_t dynamic = 0, before = 0;
   for (int drive = 0; drive < 3; ++drive) {
@@ -97,22 +103,22 @@ TEST_P(DefaultSteadyState, AllocatesNothingAScan) {
 }
 
 TEST_P(DefaultSteadyState, TakesWhatWasSaid) {
-  Config config;
-  config.method = GetParam();
   const std::vector<Scan> scans = crossing(64, 2.6);
   const auto most = std::max_element(scans.begin(), scans.end(),
                                      [](const Scan& a, const Scan& b) { return a.echoes.size() < b.echoes.size(); });
   EchoLabels labels;
   labels.resize(most->echoes.size());
   const std::size_t before = testing::liveBytes();
-  const auto detector = makeDetector(config);
+  const auto detector = makeDetector(config());
   for (const Scan& scan : scans) detector->process(scan, labels);
   const auto taken = static_cast<double>(testing::liveBytes() - before);
-  EXPECT_NEAR(memoryBound(config, most->echoes.size()), taken, 0.1 * taken);
+  EXPECT_NEAR(memoryBound(config(), most->echoes.size()), taken, 0.1 * taken);
   EXPECT_NEAR(static_cast<double>(detector->memoryBytes()), taken, 0.1 * taken);
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, DefaultSteadyState, ::testing::Values(Method::kDonex2d, Method::kDonex3d));
+INSTANTIATE_TEST_SUITE_P(Both, DefaultSteadyState,
+                         ::testing::Combine(::testing::Values(Method::kDonex2d, Method::kDonex3d),
+                                            ::testing::Values(1, 2)));
 INSTANTIATE_TEST_SUITE_P(Paper, SteadyState, ::testing::Values(Method::kDonex2d, Method::kDonex3d));
 
 }  // namespace

@@ -140,6 +140,29 @@ TEST(Clusters, ConnectWhatBruteForceConnects) {
 
 const Clusters::Options kOptions{0.3, 4.5, 0.01, 0.015};
 
+TEST(Clusters, ThreadsChangeNothing) {
+  constexpr double kReach = 40.0;
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> across(-40.0F, 40.0F), up(0.2F, 4.0F);
+  const Workers workers(3);
+  int clusters_in_all = 0;
+  for (const int count : {3000, 20000, 60000}) {  // from many clusters to one that nearly all belong to
+    Echoes echoes;
+    for (int i = 0; i < count; ++i) {
+      echoes.add(across(random), across(random), up(random),
+                 i % 5 == 0 ? ClusterRole::kFollows : ClusterRole::kConnects);
+    }
+    const std::vector<int> expected = clustersOf(echoes, kReach, kOptions);
+    Clusters clusters(kReach, kOptions);
+    for (int round = 0; round < 5; ++round) {
+      clusters.connect(echoes.sensor, echoes.points, echoes.heights, echoes.roles, workers);
+      for (std::size_t i = 0; i < expected.size(); ++i) ASSERT_EQ(clusters.of(i), expected[i]) << "echo " << i;
+    }
+    clusters_in_all += clusters.count();
+  }
+  EXPECT_GT(clusters_in_all, 1000);
+}
+
 TEST(Clusters, NumbersFollowTheFirstEchoes) {
   Echoes echoes;
   for (const float x : {9.0F, 3.0F, 9.1F, -5.0F, 3.1F, 9.2F}) echoes.add(x, 2.0F, 1.0F);

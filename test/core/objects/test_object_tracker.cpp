@@ -20,11 +20,13 @@ class Followed {
  public:
   explicit Followed(const ObjectConfig& config = {}) : segmenter_(60.0, config), tracker(config) {}
 
-  /// Number of the scan's echoes that move. `goes_on_with`: the object that the first segment's echoes beside belong to.
+  /// Number of the scan's echoes that move. `goes_on_with`: the object that the first segment's echoes beside belong
+  /// to.
   std::size_t step(const JudgedScene& scene, std::uint32_t goes_on_with = 0) {
     history_.arrive(scene.scan(), scene.judged.is_echo);
     history_.add(scene.scan(), scene.judged.is_echo);
     tracker.predict(scene.judged, predictions_);
+    segmenter_.connect(scene.judged);
     segmenter_.segment(scene.judged, predictions_, segments);
     if (goes_on_with != 0) segments[0].object = goes_on_with;
     tracker.update(scene.judged, segments, predictions_, history_.newestSeenFrom(scene.judged.odom_from_points),
@@ -125,7 +127,8 @@ TEST(ObjectTracker, WithMoreOfItInViewATurnIsJudgedAnew) {
   followed.step(whole, id);
   ASSERT_EQ(followed.tracker.objects().size(), 1U);
   EXPECT_EQ(followed.tracker.objects()[0].id, id);
-  EXPECT_NEAR(followed.tracker.objects()[0].velocity.x(), 0.8 / 0.11, 0.3) << "since the turn before, not since the half";
+  EXPECT_NEAR(followed.tracker.objects()[0].velocity.x(), 0.8 / 0.11, 0.3)
+      << "since the turn before, not since the half";
 }
 
 TEST(ObjectTracker, AVehicleAheadAtTheSameSpeedIsFoundByItsRear) {

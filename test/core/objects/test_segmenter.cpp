@@ -17,6 +17,7 @@ constexpr double kReach = 40.0;
 Segments found(const JudgedScene& scene, const Predictions& predictions = {}) {
   Segmenter segmenter(kReach, ObjectConfig{});
   Segments segments;
+  segmenter.connect(scene.judged);
   segmenter.segment(scene.judged, predictions, segments);
   return segments;
 }
