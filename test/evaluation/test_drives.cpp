@@ -11,6 +11,7 @@
 #include "core/evidence/ground.h"
 #include "donex/detector.h"
 #include "evaluation/evaluation.h"
+#include "evaluation/scan_parts.h"
 #include "io/sequence.h"
 #include "simulation/simulator.h"
 #include "support/ground_oracle.h"
@@ -86,6 +87,32 @@ TEST_P(Drives, Paper3dGivesTheOraclesLabels) {
 
 TEST_P(Drives, Paper2dGivesTheOraclesLabels) {
   expectOracleLabels<oracle::Donex2d>(Method::kDonex2d, drive(GetParam(), 10));
+}
+
+/// Cut into sectors, with nothing that tells so, whole drives have the same labels by the paper's rule.
+void expectLabelsOfWholeScans(Method method, const std::vector<LabelledScan>& scans) {
+  constexpr double kPeriod = 0.1;  // [s]
+  const Config config = paperConfig(method);
+  const auto whole = makeDetector(config), in_parts = makeDetector(config);
+  ScanParts parts(10);
+  EchoLabels expected, labels, of_part;
+  for (const LabelledScan& labelled : scans) {
+    whole->process(labelled.scan, expected);
+    labels.assign(labelled.scan.echoes.size());
+    parts.cut(labelled.scan, kPeriod);
+    for (std::size_t part = 0; part < parts.count(); ++part) {
+      in_parts->process(parts[part], of_part);
+      parts.putBack(part, of_part, labels);
+    }
+    ASSERT_EQ(labels.dynamic, expected.dynamic);
+    ASSERT_EQ(labels.observed, expected.observed);
+  }
+}
+
+TEST_P(Drives, PaperOnPartsGivesTheLabelsOfWholeScans) {
+  const std::vector<LabelledScan> scans = drive(GetParam(), 10);
+  expectLabelsOfWholeScans(Method::kDonex3d, scans);
+  expectLabelsOfWholeScans(Method::kDonex2d, scans);
 }
 
 TEST_P(Drives, TheGroundIsThatOfItsDefinition) {

@@ -27,6 +27,16 @@ inline bool inWindow(const Voxel& v, const GridWindow& window) {
 /// The labels of a scan: 1 where the echo is new.
 using Labels = std::vector<std::uint8_t>;
 
+/// The clouds of a turn, together one scan; each is seen from where its sensor was.
+using Clouds = std::vector<Scan>;
+
+/// The clouds in the window, in voxel edge lengths.
+inline std::vector<GridScan> entered(const Clouds& turn, const GridWindow& window) {
+  std::vector<GridScan> clouds(turn.size());
+  for (std::size_t i = 0; i < turn.size(); ++i) window.enter(turn[i], clouds[i]);
+  return clouds;
+}
+
 /// A remembered content that moves with the world between two scans of a resampled grid.
 struct Content3d {
   Eigen::Vector3d in_odom;
@@ -37,27 +47,25 @@ class Donex3d {
  public:
   explicit Donex3d(const Config& config) : window_(config) {}
 
-  Labels process(const Scan& scan) {
-    shift(scan.odom_from_base);
-    GridScan in_grid;
-    window_.enter(scan, in_grid);
+  Labels process(const Scan& scan) { return process(Clouds{scan}); }
 
+  /// Labels of all its clouds, one after the other.
+  Labels process(const Clouds& turn) {
+    shift(turn.front().odom_from_base);
     Voxels hit;
     std::vector<Voxel> hit_in_order;
-    Labels labels(scan.echoes.size(), 0);
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-      if (in_grid.inside[i] == 0) continue;
-      const Voxel v = absolute(voxelOf(in_grid.echoes[i]), window_);
-      if (hit.insert(v).second) hit_in_order.push_back(v);
-      labels[i] = !is_first_ && memory_.count(v) == 0;
-    }
-    for (const Eigen::Vector3f& echo : in_grid.echoes) {
-      if (!echo.allFinite()) continue;
-      for (const Index3& seen_through : LineOfSight(in_grid.origin, echo)) {
-        const Voxel v = absolute(seen_through, window_);
-        if (hit.count(v) == 0) memory_.erase(v);
+    Labels labels;
+    const std::vector<GridScan> clouds = entered(turn, window_);
+    for (const GridScan& cloud : clouds) {
+      for (std::size_t i = 0; i < cloud.echoes.size(); ++i) {
+        labels.push_back(0);
+        if (cloud.inside[i] == 0) continue;
+        const Voxel v = absolute(voxelOf(cloud.echoes[i]), window_);
+        if (hit.insert(v).second) hit_in_order.push_back(v);
+        labels.back() = !is_first_ && memory_.count(v) == 0;
       }
     }
+    for (const GridScan& cloud : clouds) forgetSeenThrough(cloud, hit);
     keepContents(hit, hit_in_order);
     memory_.insert(hit.begin(), hit.end());
     is_first_ = false;
@@ -87,6 +95,16 @@ class Donex3d {
     memory_ = moved;
   }
 
+  void forgetSeenThrough(const GridScan& cloud, const Voxels& hit) {
+    for (const Eigen::Vector3f& echo : cloud.echoes) {
+      if (!echo.allFinite()) continue;
+      for (const Index3& seen_through : LineOfSight(cloud.origin, echo)) {
+        const Voxel v = absolute(seen_through, window_);
+        if (hit.count(v) == 0) memory_.erase(v);
+      }
+    }
+  }
+
   void keepContents(const Voxels& hit, const std::vector<Voxel>& hit_in_order) {
     std::vector<Content3d> kept;
     for (const Content3d& content : contents_) {
@@ -112,10 +130,11 @@ class Donex2d {
 
   using Cell = std::array<int, 2>;
 
-  Labels process(const Scan& scan) {
-    window_.moveTo(scan.odom_from_base);
-    GridScan in_grid;
-    window_.enter(scan, in_grid);
+  Labels process(const Scan& scan) { return process(Clouds{scan}); }
+
+  /// Labels of all its clouds, one after the other.
+  Labels process(const Clouds& turn) {
+    window_.moveTo(turn.front().odom_from_base);
     if (window_.compensation() == Compensation::kScroll) {
       forgetOutside();
     } else {
@@ -124,19 +143,22 @@ class Donex2d {
     if (is_first_) floor_ = window_.minIndex().z();
     const auto lift = static_cast<float>(window_.minIndex().z() - floor_);
 
-    Labels labels(scan.echoes.size(), 0);
+    Labels labels;
     std::map<Cell, HeightRange> own;
     std::vector<Cell> hit_in_order;
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-      if (in_grid.inside[i] == 0) continue;
-      const Voxel v = absolute(voxelOf(in_grid.echoes[i]), window_);
-      const Cell cell{v[0], v[1]};
-      const float z = in_grid.echoes[i].z() + lift;
-      const auto remembered = ranges_.find(cell);
-      const bool is_new = remembered == ranges_.end() || z < remembered->second.lo || z > remembered->second.hi;
-      labels[i] = !is_first_ && is_new;
-      if (own.count(cell) == 0) hit_in_order.push_back(cell);
-      own[cell].extend(z);
+    for (const GridScan& cloud : entered(turn, window_)) {
+      for (std::size_t i = 0; i < cloud.echoes.size(); ++i) {
+        labels.push_back(0);
+        if (cloud.inside[i] == 0) continue;
+        const Voxel v = absolute(voxelOf(cloud.echoes[i]), window_);
+        const Cell cell{v[0], v[1]};
+        const float z = cloud.echoes[i].z() + lift;
+        const auto remembered = ranges_.find(cell);
+        const bool is_new = remembered == ranges_.end() || z < remembered->second.lo || z > remembered->second.hi;
+        labels.back() = !is_first_ && is_new;
+        if (own.count(cell) == 0) hit_in_order.push_back(cell);
+        own[cell].extend(z);
+      }
     }
     for (const auto& [cell, range] : own) ranges_[cell] = range;
     keepContents(own, hit_in_order);
@@ -215,6 +237,31 @@ class Donex2d {
   std::vector<Content2d> contents_;
   int floor_ = 0;
   bool is_first_ = true;
+};
+
+/// The rule on parts: the turn so far, judged as the scan that its clouds make together.
+template <class WholeScans>
+class OfParts {
+ public:
+  explicit OfParts(const Config& config) : before_(config), now_(config) {}
+
+  void beginTurn() {
+    before_ = now_;
+    turn_.clear();
+  }
+  /// Labels of the newest cloud.
+  Labels take(const Scan& cloud) {
+    turn_.push_back(cloud);
+    now_ = before_;
+    const Labels all = now_.process(turn_);
+    return {all.end() - static_cast<std::ptrdiff_t>(cloud.echoes.size()), all.end()};
+  }
+
+  const WholeScans& wholeScans() const { return now_; }
+
+ private:
+  WholeScans before_, now_;
+  Clouds turn_;
 };
 
 }  // namespace donex::oracle

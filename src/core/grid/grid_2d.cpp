@@ -22,7 +22,8 @@ Grid2d::Grid2d(const Config& config)
   for (std::size_t i = 1; i < parts_.size(); ++i) parts_[i].taken.resize(cells_.size());
 }
 
-void Grid2d::shift(const Eigen::Isometry3d& odom_from_base) {
+void Grid2d::beginTurn(const Eigen::Isometry3d& odom_from_base) {
+  rememberTurn();
   if (window_.compensation() == Compensation::kScroll) {
     layout_.scroll(window_, odom_from_base, [&](std::uint32_t slot) { cells_[slot].remembered = HeightRange{}; });
   } else {
@@ -91,14 +92,11 @@ void Grid2d::take(const Scan& scan, EchoLabels& labels) {
   };
   workers_.each(parts_.size(), std::ref(judge_part));  // by reference: a copy of it would be allocated
   for (std::size_t i = 1; i < parts_.size(); ++i) takeOver(parts_[i]);
-  if (window_.compensation() == Compensation::kResample) rememberContents();
-  rememberTaken();
 }
 
 void Grid2d::Part::begin(std::size_t most_echoes) {
   echoes.begin(most_echoes);
-  hit_count = 0;
-  if (hit.size() <= most_echoes) hit.resize(most_echoes + 1);
+  if (hit.size() <= hit_count + most_echoes) hit.resize(hit_count + most_echoes + 1);
 }
 
 /// `taken_of(slot)`: what the part's own echoes have shown of a cell.
@@ -139,15 +137,18 @@ void Grid2d::takeOver(Part& part) {
     taken.extend(part.taken[slot]);
     part.taken[slot] = HeightRange{};
   }
+  part.hit_count = 0;
 }
 
-void Grid2d::rememberTaken() {
-  const Part& all = parts_.front();
+void Grid2d::rememberTurn() {
+  if (window_.compensation() == Compensation::kResample) rememberContents();
+  Part& all = parts_.front();
   for (std::size_t i = 0; i < all.hit_count; ++i) {
     Cell& cell = cells_[all.hit[i]];
     cell.remembered = cell.taken;
     cell.taken = HeightRange{};
   }
+  all.hit_count = 0;
 }
 
 void Grid2d::rememberContents() {
@@ -167,12 +168,18 @@ void Grid2d::rememberContents() {
 
 void Grid2d::reset() {
   std::fill(cells_.begin(), cells_.end(), Cell{});
-  for (Part& part : parts_) part.echoes.clear();
+  for (Part& part : parts_) {
+    part.echoes.clear();
+    part.hit_count = 0;
+  }
   contents_.clear();
   layout_.reset();
 }
 
-HeightRange Grid2d::rangeAt(int x, int y) const { return cells_[layout_.slotOf(x, y)].remembered; }
+HeightRange Grid2d::rangeAt(int x, int y) const {
+  const Cell& cell = cells_[layout_.slotOf(x, y)];
+  return cell.taken.empty() ? cell.remembered : cell.taken;
+}
 
 double Grid2d::bytesFor(double slots, double echoes, int threads) {
   const double more_parts = threads - 1;

@@ -1,14 +1,14 @@
-// The paper's rule in 3D (paper, 3D: new echoes, shadowing, de-shadowing).
+// The paper's rule in 3D (paper, 3D: new echoes, shadowing, de-shadowing), on whole scans and on parts.
 #pragma once
 
 #include "core/grid/voxel_memory.h"
 
 namespace donex {
 
-/// `SeeThrough` says which remembered voxels a scan sees through:
+/// `SeeThrough` says which remembered voxels a cloud sees through:
 ///   kParallel                                may be filled and asked by several threads
-///   begin(placement, echoes, parts)          a scan begins, in so many parts
-///   add(part, first, block)                  a block of a part; its first echo is number `first` of the scan
+///   begin(placement, echoes, parts)          a cloud begins, in so many parts
+///   add(part, first, block)                  a block of a part; its first echo is number `first` of the cloud
 ///   finish(workers)                          all blocks are there
 ///   seenThrough(candidates, corner)          those of a brick's candidates that are, as bits of the voxels from
 ///   `corner` reset(), memoryBytes()
@@ -17,11 +17,10 @@ class Grid3d {
  public:
   explicit Grid3d(const Config& config) : memory_(SeeThrough::kParallel ? config : onOneThread(config)) {}
 
-  /// M' = shift(M_{k-1}): moves the memory to the vehicle's new pose; what leaves the window is forgotten.
-  void shift(const Eigen::Isometry3d& odom_from_base) { memory_.shift(odom_from_base); }
+  /// A turn begins at this pose of the vehicle, as VoxelMemory::beginTurn says.
+  void beginTurn(const Eigen::Isometry3d& odom_from_base) { memory_.beginTurn(odom_from_base); }
 
-  /// Judges a scan and remembers it: labels as VoxelMemory::hit says, then M_k = H_k u { v in M' : v not seen through
-  /// }.
+  /// Judges a whole scan, or a part of the turn: labels as VoxelMemory::hit says.
   void take(const Scan& scan, EchoLabels& labels) {
     const Placement placement = window().placementOf(scan);
     see_through_.begin(placement, scan.echoes, memory_.parts());
@@ -29,7 +28,7 @@ class Grid3d {
       see_through_.add(part, first, block);
     });
     see_through_.finish(memory_.workers());
-    memory_.remember(
+    memory_.seeThrough(
         [&](std::uint64_t candidates, const Index3& corner) { return see_through_.seenThrough(candidates, corner); });
   }
 

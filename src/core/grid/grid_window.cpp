@@ -59,12 +59,18 @@ void GridWindow::moveTo(const Eigen::Isometry3d& odom_from_base) {
   const Region swept = sweptRegion(region_);
   const Eigen::Vector3d low = odom_from_base.translation() + Eigen::Vector3d(swept.x_min, swept.y_min, swept.z_min);
   for (int axis = 0; axis < 3; ++axis) min_index_[axis] = floorToBrick(low[axis] / voxel_size_);
-  grid_from_base_ = odom_from_base;
+}
+
+/// The vehicle's pose in the grid; exact where the grid lies at that very pose.
+Eigen::Isometry3d GridWindow::gridFrom(const Eigen::Isometry3d& odom_from_base) const {
+  if (compensation_ == Compensation::kScroll) return odom_from_base;
+  const bool is_there = odom_from_base.matrix() == odom_from_grid_.matrix();
+  return is_there ? Eigen::Isometry3d::Identity() : odom_from_grid_.inverse() * odom_from_base;
 }
 
 Placement GridWindow::placementOf(const Scan& scan) const {
   // Only the short way from window corner to echo is left to single precision.
-  Eigen::Isometry3d window_from_base = grid_from_base_;
+  Eigen::Isometry3d window_from_base = gridFrom(scan.odom_from_base);
   window_from_base.translation() -= min_index_.cast<double>() * voxel_size_;
   const Eigen::Isometry3d window_from_sensor = window_from_base * scan.base_from_sensor;
   Placement placement;

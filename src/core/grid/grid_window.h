@@ -41,12 +41,12 @@ class GridWindow {
   /// numbers, so that any configuration can be asked.
   static Eigen::Vector3d extentOf(const Config& config);
 
-  /// Places the window for a scan taken at this vehicle pose.
+  /// Places the window around the vehicle at this pose.
   void moveTo(const Eigen::Isometry3d& odom_from_base);
 
-  /// How a scan lies in the window. Call after moveTo with the scan's own pose.
+  /// How a scan lies in the window, taken at whatever pose: parts of a turn enter the window of its first one.
   Placement placementOf(const Scan& scan) const;
-  /// Gives every echo its place. Call after moveTo with the scan's own pose.
+  /// Gives every echo its place.
   void enter(const Scan& scan, GridScan& result) const {
     beginScan(scan, result);
     enterSome(scan, 0, scan.echoes.size(), result);
@@ -83,12 +83,13 @@ class GridWindow {
   static constexpr int kBrick = 4;
 
  private:
+  Eigen::Isometry3d gridFrom(const Eigen::Isometry3d& odom_from_base) const;
+
   Compensation compensation_;
   double voxel_size_;
   Region region_;
   Index3 extent_, min_index_;
   Eigen::Isometry3d odom_from_grid_ = Eigen::Isometry3d::Identity();
-  Eigen::Isometry3d grid_from_base_ = Eigen::Isometry3d::Identity();
 };
 
 /// A scan's echoes from the window's lowest corner [m], and which of them are echoes at all.

@@ -7,7 +7,6 @@ namespace donex {
 namespace {
 
 constexpr std::uint64_t kAll = ~std::uint64_t{0};
-constexpr int kBricksAhead = 12;  // bricks are asked of memory so many echoes before they are needed
 
 std::uint64_t maskOf(std::uint32_t bit) { return std::uint64_t{1} << bit; }
 
@@ -28,7 +27,8 @@ VoxelMemory::VoxelMemory(const Config& config)
   layout_.scrollTo(window_.minIndex());
 }
 
-void VoxelMemory::shift(const Eigen::Isometry3d& odom_from_base) {
+void VoxelMemory::beginTurn(const Eigen::Isometry3d& odom_from_base) {
+  rememberTurn();
   if (window_.compensation() == Compensation::kScroll) {
     scroll(odom_from_base);
   } else {
@@ -101,12 +101,13 @@ void VoxelMemory::hit(std::size_t part, std::size_t first, const EchoBlock& bloc
 template <class HitOf>
 void VoxelMemory::hit(Part& part, std::size_t first, const EchoBlock& block, const BlockSlots& at, EchoLabels& labels,
                       HitOf&& hit_of) {
+  constexpr auto kAhead = static_cast<int>(kBricksAhead);
   const bool keeps_order = window_.compensation() == Compensation::kResample;
   std::uint8_t* dynamic = labels.dynamic.data() + first;
   std::array<int, EchoBlock::kSize + 1> new_echoes;  // not set: a block's worth of it is written each time
   int new_count = 0;
   for (int i = 0; i < block.count; ++i) {
-    if (i + kBricksAhead < EchoBlock::kSize) __builtin_prefetch(&bricks_[at.slot[i + kBricksAhead]], 1);
+    if (i + kAhead < EchoBlock::kSize) __builtin_prefetch(&bricks_[at.slot[i + kAhead]], 1);
     const std::uint64_t mask = maskOf(at.bit[i]);
     const bool is_new = (bricks_[at.slot[i]].remembered & mask) == 0;
     std::uint64_t& hit = hit_of(i);
@@ -120,17 +121,13 @@ void VoxelMemory::hit(Part& part, std::size_t first, const EchoBlock& block, con
   part.echoes.add(first, block, new_echoes.data(), new_count);
 }
 
-void VoxelMemory::Part::begin(std::size_t most_echoes) {
-  echoes.begin(most_echoes);
-  hit_voxels.clear();
-}
-
 void VoxelMemory::takeOver(Part& part) {
   std::vector<Index3>& in_order = parts_.front().hit_voxels;
   for (const Index3& voxel : part.hit_voxels) {
     const BrickBit at = layout_.locate(voxel);
     if ((bricks_[at.slot].hit & maskOf(at.bit)) == 0) in_order.push_back(voxel);
   }
+  part.hit_voxels.clear();
   for (std::size_t i = 0; i < part.touched.size(); ++i) {
     if (i + kBricksAhead < part.touched.size()) {
       __builtin_prefetch(&bricks_[part.touched[i + kBricksAhead].slot], 1);
@@ -143,6 +140,34 @@ void VoxelMemory::takeOver(Part& part) {
     part.hit[touched.slot] = 0;
   }
   part.touched.clear();
+}
+
+void VoxelMemory::rememberTurn() {
+  forgetHitContents();
+  kept_.resize(stretches());
+  const auto remember_some = [&](std::size_t i) { kept_[i] = rememberSome(beginOf(i), beginOf(i + 1)); };
+  workers_.each(stretches(), std::ref(remember_some));
+  auto end = used_.begin();
+  for (std::size_t i = 0; i < stretches(); ++i) {
+    const auto first = used_.begin() + static_cast<std::ptrdiff_t>(beginOf(i));
+    end = std::move(first, first + static_cast<std::ptrdiff_t>(kept_[i]), end);
+  }
+  used_.erase(end, used_.end());
+  rememberContents();
+}
+
+/// Bricks `first` to `last` (not included) of used_; those that stay come first then, and are counted.
+std::size_t VoxelMemory::rememberSome(std::size_t first, std::size_t last) {
+  std::size_t kept = first;
+  for (std::size_t i = first; i < last; ++i) {
+    if (i + kBricksAhead < last) __builtin_prefetch(&bricks_[used_[i + kBricksAhead].slot], 1);
+    Used used = used_[i];
+    Brick& brick = bricks_[used.slot];
+    brick = {used.rememberedOf(brick), 0};
+    used.seen_through = 0;
+    if (brick.remembered != 0) used_[kept++] = used;
+  }
+  return kept - first;
 }
 
 /// A hit voxel starts anew from its centre; one in the shadow keeps the residual it carries.
@@ -161,6 +186,7 @@ void VoxelMemory::rememberContents() {
   for (const Index3& voxel : parts_.front().hit_voxels) {
     contents_.push_back({window_.odomFromGrid() * window_.indexToCenter(voxel), layout_.locate(voxel)});
   }
+  parts_.front().hit_voxels.clear();
 }
 
 void VoxelMemory::clearBricks() {
@@ -171,13 +197,16 @@ void VoxelMemory::clearBricks() {
 void VoxelMemory::reset() {
   clearBricks();
   contents_.clear();
-  for (Part& part : parts_) part.echoes.clear();
+  for (Part& part : parts_) {
+    part.echoes.clear();
+    part.hit_voxels.clear();
+  }
 }
 
 std::vector<Index3> VoxelMemory::remembered() const {
   std::vector<Index3> voxels;
   for (const Used& used : used_) {
-    for (std::uint64_t word = bricks_[used.slot].remembered; word != 0; word &= word - 1) {
+    for (std::uint64_t word = used.rememberedOf(bricks_[used.slot]); word != 0; word &= word - 1) {
       voxels.push_back(BrickLayout::voxelOfBit(used.corner - window_.minIndex(), __builtin_ctzll(word)));
     }
   }

@@ -6,12 +6,13 @@
 #include "core/methods/detectors.h"
 #include "core/methods/stream_guard.h"
 #include "core/sight/ray_index.h"
+#include "core/sight/sampled_turns.h"
 #include "core/sight/z_buffer.h"
 
 namespace donex {
 namespace {
 
-/// Voxels of the window that the scan hits, in order.
+/// Voxels of the window that the cloud hits, in order.
 std::vector<Index3> hitVoxels(const GridWindow& window, const Scan& scan) {
   GridScan in_grid;
   window.enter(scan, in_grid);
@@ -31,7 +32,7 @@ std::vector<Index3> rememberedBy(const Grid3d<SeeThrough>& grid) {
   return grid.remembered();
 }
 
-/// What both grids share: the stream's order, and that nothing is new in the first scan.
+/// What both grids share: the stream's order, its turns, and that nothing is new in the first one.
 template <class Grid>
 class PaperDetector : public Detector {
  public:
@@ -39,24 +40,22 @@ class PaperDetector : public Detector {
 
   void process(const Scan& scan, EchoLabels& labels) override {
     guard_.admit(scan);
-    grid_.shift(scan.odom_from_base);
+    if (turns_.arrive(scan) != TurnPart::kContinuing) beginTurn(scan.odom_from_base);
     if (watched_) before_ = rememberedBy(grid_);
     grid_.take(scan, labels);
     if (watched_) hit_ = hitVoxels(grid_.window(), scan);
-    if (is_first_) std::fill(labels.dynamic.begin(), labels.dynamic.end(), 0);
+    if (!knows_) std::fill(labels.dynamic.begin(), labels.dynamic.end(), 0);
     judged_ = labels;
-    if (is_first_) labels.assign(scan.echoes.size());  // nothing is known yet, so nothing is new
-    knows_ = !is_first_;
-    is_first_ = false;
+    if (!knows_) labels.assign(scan.echoes.size());  // nothing is known yet, so nothing is new
   }
 
   void reset() override {
     grid_.reset();
     guard_.reset();
+    turns_.reset();
     judged_.resize(0);
     before_.clear();
-    is_first_ = true;
-    knows_ = false;
+    has_turn_ = knows_ = false;
   }
 
   const std::vector<Object>& objects() const override { return no_objects_; }
@@ -81,7 +80,7 @@ class PaperDetector : public Detector {
     const GridWindow& window = grid_.window();
     std::vector<Index3> remembered = rememberedBy(grid_);
     std::sort(remembered.begin(), remembered.end(), isBefore);
-    // Before the scan there were all of these: what was not forgotten was hit, or is in the shadow.
+    // Before the cloud there were all of these: what was not forgotten was hit, or is in the shadow.
     for (const Index3& voxel : before_) {
       const Eigen::Vector3f center = (window.odomFromGrid() * window.indexToCenter(voxel)).cast<float>();
       const bool stays = std::binary_search(remembered.begin(), remembered.end(), voxel, isBefore);
@@ -103,18 +102,25 @@ class PaperDetector : public Detector {
   GridOutline outline() const override { return grid_.window().outline(); }
 
   std::size_t memoryBytes() const override {
-    return grid_.memoryBytes() + judged_.dynamic.capacity() + judged_.observed.capacity();
+    return grid_.memoryBytes() + turns_.memoryBytes() + judged_.dynamic.capacity() + judged_.observed.capacity();
   }
 
  private:
+  void beginTurn(const Eigen::Isometry3d& odom_from_base) {
+    knows_ = has_turn_;
+    has_turn_ = true;
+    grid_.beginTurn(odom_from_base);
+  }
+
   Grid grid_;
   StreamGuard guard_;
+  SampledTurns turns_;
   EchoLabels judged_;
   std::vector<Object> no_objects_;
-  bool is_first_ = true;
-  bool knows_ = false;  ///< the last scan was judged against one before it
+  bool has_turn_ = false;
+  bool knows_ = false;  ///< the last cloud was judged against a turn before its own
   bool watched_ = false;
-  std::vector<Index3> before_, hit_;  ///< of the last scan, in its window; only while watched
+  std::vector<Index3> before_, hit_;  ///< of the last cloud, in its window; only while watched
 };
 
 }  // namespace
@@ -132,11 +138,11 @@ std::unique_ptr<Detector> makePaperDetector2d(const Config& config) {
 double paperBytes3d(const Config& config, double echoes) {
   const double bricks = (GridWindow::extentOf(config) / GridWindow::kBrick).prod();
   return VoxelMemory::bytesFor(bricks, echoes, config.threads) + RayIndex::bytesFor(echoes, config.threads) +
-         kKeptLabels * echoes;
+         SampledTurns::bytesFor(echoes) + kKeptLabels * echoes;
 }
 double paperBytes2d(const Config& config, double echoes) {
   const double cells = GridWindow::extentOf(config).head<2>().prod();
-  return Grid2d::bytesFor(cells, echoes, config.threads) + kKeptLabels * echoes;
+  return Grid2d::bytesFor(cells, echoes, config.threads) + SampledTurns::bytesFor(echoes) + kKeptLabels * echoes;
 }
 
 }  // namespace donex

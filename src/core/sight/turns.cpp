@@ -8,7 +8,14 @@ namespace {
 constexpr std::size_t kColumns = SightPixels::kColumns;
 constexpr std::size_t kWidestGap = kColumns / 12;  // columns; a cloud with echoes on both sides looks at it, too
 constexpr std::size_t kBorder = 2;                 // columns that a part may share with the one beside
+constexpr std::size_t kFewest = 50;                // echoes; fewer do not tell that scans come in parts
 constexpr std::size_t kRepeated = 4;               // one in so many columns seen again: the sensor looks there again
+
+bool hasEnough(const SightPixels& seen) {
+  std::size_t echoes = 0;
+  for (std::size_t i = 0; i < seen.size() && echoes < kFewest; ++i) echoes += seen.row(i) >= 0 ? 1U : 0U;
+  return echoes == kFewest;
+}
 
 }  // namespace
 
@@ -24,7 +31,9 @@ TurnPart Turns::arrive(const Scan& scan, const SightPixels& seen, const Workers&
     again += std::min(columns[c], sensor->looked[c]);
   }
   const bool looks_again = (again > kBorder && kRepeated * again > all) || (all > 0 && again == all);
-  const bool goes_on = !is_long && (sensor != nullptr ? !looks_again : is_one_more);
+  const bool has_enough = hasEnough(seen);
+  const bool may_be_part = comes_in_parts_ || (has_enough && newest_has_enough_);
+  const bool goes_on = !is_long && may_be_part && (sensor != nullptr ? !looks_again : is_one_more);
   if (!goes_on) {
     begin_ = scan.stamp;
     sensors_.clear();
@@ -38,6 +47,8 @@ TurnPart Turns::arrive(const Scan& scan, const SightPixels& seen, const Workers&
   }
   newest_sensor_ = static_cast<std::size_t>(sensor - sensors_.data());
   const bool was_in_parts = clouds_ > 1;
+  comes_in_parts_ = goes_on || was_in_parts;
+  newest_has_enough_ = has_enough;
   clouds_ = goes_on ? clouds_ + 1 : 1;
   if (goes_on) return TurnPart::kContinuing;
   return was_in_parts ? TurnPart::kFirst : TurnPart::kWhole;

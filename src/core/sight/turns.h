@@ -19,7 +19,8 @@ enum class TurnPart {
 
 /// A turn is the clouds from one on until a sensor looks again where it has looked since. Whole scans are a turn each;
 /// a sensor that publishes sectors, and several sensors on one vehicle, have turns of several clouds, in whatever order
-/// they come. All of that is measured in the directions of the echoes; nothing tells what a cloud is.
+/// they come. All of that is measured in the directions of the echoes; nothing tells what a cloud is. A handful of
+/// echoes does not tell that scans come in parts.
 class Turns {
  public:
   /// Takes the next cloud. `seen`: its pixels in its own frame.
@@ -35,6 +36,7 @@ class Turns {
   void reset() {
     sensors_.clear();
     clouds_ = 0;
+    comes_in_parts_ = false;
   }
 
   std::size_t memoryBytes() const { return in_stretch_.capacity() * sizeof(Columns); }
@@ -54,8 +56,10 @@ class Turns {
   Columns columnsOf(const SightPixels& seen, const Workers& workers);
   Sensor* sensorAt(const Eigen::Isometry3d& base_from_sensor);
 
-  double begin_ = 0.0;      ///< [s]
-  std::size_t clouds_ = 0;  ///< of the turn
+  double begin_ = 0.0;              ///< [s]
+  std::size_t clouds_ = 0;          ///< of the turn
+  bool comes_in_parts_ = false;     ///< this turn, or the one before
+  bool newest_has_enough_ = false;  ///< echoes to tell that its scan comes in parts
   std::vector<Sensor> sensors_;
   std::vector<Columns> in_stretch_;  ///< of the newest cloud: with an echo of that stretch
   Columns newest_{};

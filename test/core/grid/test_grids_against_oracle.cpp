@@ -1,8 +1,11 @@
-// The fast grids give the oracle's labels and the oracle's memory, echo by echo.
+// The fast grids give the oracle's labels and the oracle's memory, echo by echo, on whole scans and on parts.
+#include <random>
+
 #include <gtest/gtest.h>
 
 #include "core/grid/grid_2d.h"
 #include "core/grid/grid_3d.h"
+#include "core/sector.h"
 #include "core/sight/ray_index.h"
 #include "donex/detector.h"
 #include "support/oracle.h"
@@ -42,14 +45,26 @@ std::vector<Case> cases() {
 constexpr int kScans = 25;
 constexpr int kEchoes = 600;  // three blocks: one per thread at most
 
+using Ranges = std::map<oracle::Donex2d::Cell, HeightRange>;
+
+void expectSame(const oracle::Voxels& memory, const oracle::Voxels& expected) { ASSERT_EQ(memory, expected); }
+void expectSame(const Ranges& memory, const Ranges& expected) {
+  ASSERT_EQ(memory.size(), expected.size());
+  for (const auto& [cell, range] : expected) {
+    ASSERT_EQ(memory.count(cell), 1U);
+    ASSERT_EQ(memory.at(cell).lo, range.lo);
+    ASSERT_EQ(memory.at(cell).hi, range.hi);
+  }
+}
+
 void expectSameMemory(const Grid3d<RayIndex>& grid, const oracle::Donex3d& oracle) {
   oracle::Voxels voxels;
   for (const Index3& v : grid.remembered()) voxels.insert(oracle::absolute(v, grid.window()));
-  ASSERT_EQ(voxels, oracle.memory());
+  expectSame(voxels, oracle.memory());
 }
 
 void expectSameMemory(const Grid2d& grid, const oracle::Donex2d& oracle) {
-  std::map<oracle::Donex2d::Cell, HeightRange> ranges;
+  Ranges ranges;
   for (int x = 0; x < grid.window().extent().x(); ++x) {
     for (int y = 0; y < grid.window().extent().y(); ++y) {
       const HeightRange range = grid.rangeAt(x, y);
@@ -57,12 +72,7 @@ void expectSameMemory(const Grid2d& grid, const oracle::Donex2d& oracle) {
       if (!range.empty()) ranges[{v[0], v[1]}] = range;
     }
   }
-  ASSERT_EQ(ranges.size(), oracle.memory().size());
-  for (const auto& [cell, range] : oracle.memory()) {
-    ASSERT_EQ(ranges.count(cell), 1U);
-    ASSERT_EQ(ranges.at(cell).lo, range.lo);
-    ASSERT_EQ(ranges.at(cell).hi, range.hi);
-  }
+  expectSame(ranges, oracle.memory());
 }
 
 template <class Grid, class Oracle>
@@ -75,7 +85,7 @@ void compareGrid(const Config& config, unsigned seed) {
   for (int k = 0; k < kScans; ++k) {
     const Scan scan = scans.next(kEchoes);
     const oracle::Labels expected = oracle.process(scan);
-    grid.shift(scan.odom_from_base);
+    grid.beginTurn(scan.odom_from_base);
     grid.take(scan, labels);
     for (std::size_t i = 0; k > 0 && i < expected.size(); ++i) {
       ASSERT_EQ(labels.dynamic[i], expected[i]) << "scan " << k << " echo " << i;
@@ -99,6 +109,71 @@ void compareDetector(const Config& config, unsigned seed) {
   }
 }
 
+/// Scans as clouds of turns, each from where the vehicle is by then, and by one sensor or another.
+template <class Grid, class Oracle>
+void compareGridOnParts(const Config& config, unsigned seed) {
+  testing::RandomScans scans(seed, config.voxel_size, 12.0F);
+  std::mt19937 random(seed);
+  oracle::OfParts<Oracle> oracle(config);
+  Grid grid(config);
+  EchoLabels labels;
+  std::size_t new_echoes = 0;
+  int turns = 0;
+  for (int k = 0; k < kScans; ++k) {
+    Scan cloud = scans.next(kEchoes);
+    if (random() % 2 == 0) cloud.base_from_sensor = Eigen::Translation3d(2.0, 0.5, -0.25);
+    if (k == 0 || random() % 4 == 0) {
+      ++turns;
+      oracle.beginTurn();
+      grid.beginTurn(cloud.odom_from_base);
+    }
+    const oracle::Labels expected = oracle.take(cloud);
+    grid.take(cloud, labels);
+    for (std::size_t i = 0; turns > 1 && i < expected.size(); ++i) {
+      ASSERT_EQ(labels.dynamic[i], expected[i]) << "cloud " << k << " echo " << i;
+      new_echoes += labels.dynamic[i];
+    }
+    ASSERT_NO_FATAL_FAILURE(expectSameMemory(grid, oracle.wholeScans())) << "cloud " << k;
+  }
+  EXPECT_GT(new_echoes, 100U);
+}
+
+/// The scan's echoes by azimuth.
+std::vector<Scan> sectorsOf(const Scan& scan, std::size_t count) {
+  Scan none = scan;
+  none.echoes.clear();
+  std::vector<Scan> sectors(count, none);
+  for (const Eigen::Vector3f& echo : scan.echoes) sectors[sectorOf(echo, count)].echoes.push_back(echo);
+  return sectors;
+}
+
+/// What the parts are together, in their order: where resampled contents meet in one voxel, the first one stays.
+Scan together(const std::vector<Scan>& parts) {
+  Scan scan = parts.front();
+  scan.echoes.clear();
+  for (const Scan& part : parts) scan.echoes.insert(scan.echoes.end(), part.echoes.begin(), part.echoes.end());
+  return scan;
+}
+
+/// Parts of a turn at one pose have together the labels, and leave the memory, of the whole scan.
+template <class Oracle>
+void comparePartsWithWhole(const Config& config, unsigned seed) {
+  testing::RandomScans scans(seed, config.voxel_size, 12.0F);
+  Oracle whole(config);
+  oracle::OfParts<Oracle> in_parts(config);
+  for (int k = 0; k < kScans; ++k) {
+    const std::vector<Scan> parts = sectorsOf(scans.next(kEchoes / 2), 1 + static_cast<std::size_t>(k) % 5);
+    in_parts.beginTurn();
+    oracle::Labels labels;
+    for (const Scan& part : parts) {
+      const oracle::Labels of_part = in_parts.take(part);
+      labels.insert(labels.end(), of_part.begin(), of_part.end());
+    }
+    ASSERT_EQ(labels, whole.process(together(parts))) << "scan " << k;
+    ASSERT_NO_FATAL_FAILURE(expectSame(in_parts.wholeScans().memory(), whole.memory())) << "scan " << k;
+  }
+}
+
 class AgainstOracle : public ::testing::TestWithParam<Case> {
  protected:
   static Config config(Method method) { return smallGrid(method, GetParam()); }
@@ -112,6 +187,52 @@ TEST_P(AgainstOracle, Detector3d) { compareDetector<oracle::Donex3d>(config(Meth
 TEST_P(AgainstOracle, Grid2d) { compareGrid<Grid2d, oracle::Donex2d>(config(Method::kDonex2d), seed() + 2000); }
 
 TEST_P(AgainstOracle, Detector2d) { compareDetector<oracle::Donex2d>(config(Method::kDonex2d), seed() + 3000); }
+
+TEST_P(AgainstOracle, Grid3dOnParts) {
+  compareGridOnParts<Grid3d<RayIndex>, oracle::Donex3d>(config(Method::kDonex3d), seed() + 4000);
+}
+
+TEST_P(AgainstOracle, Grid2dOnParts) {
+  compareGridOnParts<Grid2d, oracle::Donex2d>(config(Method::kDonex2d), seed() + 5000);
+}
+
+TEST_P(AgainstOracle, ItsPartsAreTogetherTheWholeIn3d) {
+  comparePartsWithWhole<oracle::Donex3d>(config(Method::kDonex3d), seed() + 6000);
+}
+
+TEST_P(AgainstOracle, ItsPartsAreTogetherTheWholeIn2d) {
+  comparePartsWithWhole<oracle::Donex2d>(config(Method::kDonex2d), seed() + 7000);
+}
+
+class Parts : public ::testing::TestWithParam<std::tuple<Method, Compensation, int>> {};
+
+TEST_P(Parts, HaveTogetherTheLabelsOfTheWhole) {
+  const auto [method, compensation, parts] = GetParam();
+  const auto whole = makeDetector(smallGrid(method, {8, 0.25, compensation, 1}));
+  const auto in_parts = makeDetector(smallGrid(method, {8, 0.25, compensation, 2}));
+  testing::RandomScans scans(8, 0.25, 12.0F);
+  EchoLabels expected, of_part;
+  std::size_t dynamic = 0;
+  for (int k = 0; k < kScans; ++k) {
+    const std::vector<Scan> sectors = sectorsOf(scans.next(20000), static_cast<std::size_t>(parts));
+    whole->process(together(sectors), expected);
+    EchoLabels labels;
+    for (const Scan& sector : sectors) {
+      in_parts->process(sector, of_part);
+      labels.dynamic.insert(labels.dynamic.end(), of_part.dynamic.begin(), of_part.dynamic.end());
+      labels.observed.insert(labels.observed.end(), of_part.observed.begin(), of_part.observed.end());
+    }
+    ASSERT_EQ(labels.dynamic, expected.dynamic) << "scan " << k;
+    ASSERT_EQ(labels.observed, expected.observed) << "scan " << k;
+    for (const std::uint8_t label : labels.dynamic) dynamic += label;
+  }
+  EXPECT_GT(dynamic, 1000U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Paper, Parts,
+                         ::testing::Combine(::testing::Values(Method::kDonex2d, Method::kDonex3d),
+                                            ::testing::Values(Compensation::kScroll, Compensation::kResample),
+                                            ::testing::Values(2, 4, 10)));
 
 class Threads : public ::testing::TestWithParam<std::tuple<Method, Compensation, int>> {};
 

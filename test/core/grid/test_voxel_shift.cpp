@@ -43,10 +43,10 @@ Scan landmarks() {
 template <class Memory>
 void takeAndMoveOn(Memory& memory, const Scan& scan) {
   EchoLabels labels;
-  memory.shift(Eigen::Isometry3d::Identity());
+  memory.beginTurn(Eigen::Isometry3d::Identity());
   memory.take(scan, labels);
   for (int k = 1; k <= kShifts; ++k) {
-    memory.shift(poseAfter(k));
+    memory.beginTurn(poseAfter(k));
     memory.take(Scan(), labels);
   }
 }
@@ -96,12 +96,12 @@ TEST_P(VoxelShift, KeepsRangesWithinOneVoxelIn2d) {
 TEST_P(VoxelShift, ForgetsWhatLeavesTheWindow) {
   Grid3d<RayIndex> memory(grid(Method::kDonex3d, GetParam()));
   EchoLabels labels;
-  memory.shift(Eigen::Isometry3d::Identity());
+  memory.beginTurn(Eigen::Isometry3d::Identity());
   memory.take(landmarks(), labels);
-  memory.shift(Eigen::Isometry3d(Eigen::Translation3d(200, 0, 0)));
+  memory.beginTurn(Eigen::Isometry3d(Eigen::Translation3d(200, 0, 0)));
   EXPECT_TRUE(memory.remembered().empty());
   memory.take(Scan(), labels);
-  memory.shift(Eigen::Isometry3d::Identity());
+  memory.beginTurn(Eigen::Isometry3d::Identity());
   EXPECT_TRUE(memory.remembered().empty()) << "what was forgotten does not come back";
 }
 

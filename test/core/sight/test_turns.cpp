@@ -1,9 +1,11 @@
 // Which clouds are one turn: nothing but their directions tells.
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "core/sight/sampled_turns.h"
 #include "core/sight/sight_history.h"
 
 namespace donex {
@@ -101,6 +103,35 @@ TEST(Turns, LostPartsDelayNothing) {
 TEST(Turns, APartThatComesTwiceBeginsATurn) {
   EXPECT_EQ(turnsOf({sector(0.0, 0.0, 90.0), sector(0.025, 90.0, 180.0), sector(0.026, 90.0, 180.0)}),
             (std::vector<int>{1, 1, 2}));
+}
+
+/// Such clouds are tests, or a sensor that sees next to nothing: nothing tells what a turn is.
+TEST(Turns, AHandfulOfEchoesIsATurn) {
+  const std::vector<Scan> clouds{sector(0.0, 0.0, 0.9), sector(0.1, 90.0, 90.9), sector(0.2, 180.0, 270.0), Scan(),
+                                 sector(0.3, 180.0, 270.0)};
+  EXPECT_EQ(turnsOf(clouds), (std::vector<int>{1, 2, 3, 4, 5}));
+}
+
+TEST(Turns, AHandfulOfEchoesGoesOnWithAStreamOfParts) {
+  EXPECT_EQ(turnsOf({sector(0.0, 0.0, 90.0), sector(0.025, 90.0, 180.0), sector(0.05, 180.0, 180.9), Scan(),
+                     sector(0.075, 270.0, 360.0), sector(0.1, 0.0, 0.9), sector(0.125, 90.0, 180.0)}),
+            (std::vector<int>{1, 1, 1, 1, 1, 2, 2}));
+}
+
+TEST(Turns, ASampleOfTheEchoesTellsThem) {
+  SampledTurns turns;
+  for (int k = 0; k < 30; ++k) {
+    Scan cloud = sector(0.01 * k, 36.0 * (k % 10), 36.0 * (k % 10 + 1));
+    const std::vector<Eigen::Vector3f> once = cloud.echoes;
+    // Beam by beam, with the upper ones in the sky: a step of 16 would meet none but those.
+    cloud.echoes.clear();
+    for (const Eigen::Vector3f& echo : once) {
+      cloud.echoes.insert(cloud.echoes.end(), 15, Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
+      cloud.echoes.push_back(echo);
+    }
+    ASSERT_GT(cloud.echoes.size(), SampledTurns::kSample);
+    EXPECT_EQ(turns.arrive(cloud) == TurnPart::kContinuing, k % 10 != 0) << k;
+  }
 }
 
 TEST(Turns, SeveralSensorsShareThem) {
