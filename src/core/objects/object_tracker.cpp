@@ -91,11 +91,10 @@ void ObjectTracker::match(double stamp, const Segments& segments) {
     const bool is_complete = followed.turn == turn_ && !followed.is_claimed;
     if (is_complete || isNewcomer(followed)) continue;
     const Track& track = beforeTurn(followed);
-    const Eigen::Vector3d predicted = track.centerAt(stamp);
     for (std::size_t c = 0; c < segments.size(); ++c) {
-      const double distance = (segments[c].center() - predicted).norm();
+      const double distance = (segments[c].center() - track.centerAt(stamp)).norm();
       const bool is_alike = distance <= stepOf(track) && rules_.areAlike(track.extent, segments[c].extent());
-      if (is_alike || mayBeginWith(track, predicted, segments[c])) pairs_.push_back({distance, t, c});
+      if (is_alike) pairs_.push_back({distance, t, c});
     }
   }
   // The nearest pairs first: what stands still finds itself and leaves the rest to what moves.
@@ -145,13 +144,6 @@ void ObjectTracker::settleClaims() {
 double ObjectTracker::stepOf(const Track& track) const {
   const bool has_velocity = track.first_seen < track.last_seen;
   return has_velocity ? rules_.options().followed_distance : options_.first_step;
-}
-
-/// The first part of what moves lies somewhere in it.
-bool ObjectTracker::mayBeginWith(const Track& track, const Eigen::Vector3d& predicted, const Segment& segment) const {
-  const Eigen::Array3d half = 0.5 * track.full_extent.array() + options_.whole_rim;
-  return segment.is_of_two_turns && track.dynamic && ((segment.low - predicted).array() > -half).all() &&
-         ((segment.high - predicted).array() < half).all();
 }
 
 void ObjectTracker::follow(Track& track, double stamp, const Segment& segment) const {

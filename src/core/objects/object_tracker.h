@@ -98,7 +98,6 @@ class ObjectTracker {
   void claimParts(const Segments& segments);
   void settleClaims();
   double stepOf(const Track& track) const;
-  bool mayBeginWith(const Track& track, const Eigen::Vector3d& predicted, const Segment& segment) const;
   /// Seen for the first time in this turn.
   bool isNewcomer(const Followed& followed) const { return followed.turn == turn_ && !followed.before; }
   const Track& beforeTurn(const Followed& followed) const {
