@@ -91,9 +91,11 @@ void ObjectTracker::match(double stamp, const Segments& segments) {
     const bool is_complete = followed.turn == turn_ && !followed.is_claimed;
     if (is_complete || isNewcomer(followed)) continue;
     const Track& track = beforeTurn(followed);
+    const Eigen::Vector3d predicted = track.centerAt(stamp);
+    const double step = stepOf(track);
     for (std::size_t c = 0; c < segments.size(); ++c) {
-      const double distance = (segments[c].center() - track.centerAt(stamp)).norm();
-      const bool is_alike = distance <= stepOf(track) && rules_.areAlike(track.extent, segments[c].extent());
+      const double distance = (segments[c].center() - predicted).norm();
+      const bool is_alike = distance <= step && rules_.areAlike(track.extent, segments[c].extent());
       if (is_alike) pairs_.push_back({distance, t, c});
     }
   }
