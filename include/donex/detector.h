@@ -45,6 +45,10 @@ class Detector {
   /// Somebody wants memoryCells() of the coming scans: only then is kept what it needs.
   virtual void watch(bool) {}
 
+  /// Of this turn so far or of the one before, whichever has more; 1 where clouds are whole scans, or the method takes
+  /// them for such.
+  virtual std::size_t cloudsPerTurn() const { return 1; }
+
   /// Whether the last scan holds hardly any ground although the method looks for it.
   virtual bool lacksGround() const { return false; }
 

@@ -188,7 +188,9 @@ void visitCloud(CloudConfig& c, Visitor& visit) {
 
 template <class Visitor>
 void visitNode(NodeConfig& n, Visitor& visit) {
-  visit(ParameterInfo{"queue_size", "clouds", "clouds that may wait for odometry; the oldest is dropped beyond", false},
+  visit(ParameterInfo{"queue_size", "clouds",
+                      "clouds that may wait for odometry, the parts of a turn for one; the oldest is dropped beyond",
+                      false},
         n.queue_size, 1, 1000);
   visit(ParameterInfo{"markers", "", "publish ~markers at all", true}, n.markers);
   visit(ParameterInfo{"marker_cells", "", "markers of dynamic cells", true}, n.marker_cells);

@@ -81,10 +81,20 @@ void Pipeline::place(WaitingCloud cloud) {
   const auto place = std::upper_bound(waiting_.begin(), waiting_.end(), stamp, later);
   order_.admit(*cloud.cloud);
   waiting_.insert(place, std::move(cloud));
-  if (waiting_.size() <= static_cast<std::size_t>(config_.node.queue_size)) return;
-  const ros::Time oldest = waiting_.front().cloud->header.stamp;
-  waiting_.pop_front();
-  drop(DropReason::kQueueFull, cloudOf(oldest) + " had to make room for newer ones");
+  while (isQueueTooLong()) {
+    const ros::Time oldest = waiting_.front().cloud->header.stamp;
+    waiting_.pop_front();
+    drop(DropReason::kQueueFull, cloudOf(oldest) + " had to make room for newer ones");
+  }
+}
+
+/// The clouds of a turn count as one scan, as long as they are together no larger than usual ones.
+bool Pipeline::isQueueTooLong() const {
+  const auto most = static_cast<std::size_t>(config_.node.queue_size);
+  if (waiting_.size() <= most) return false;
+  std::size_t echoes = 0;
+  for (const WaitingCloud& waiting : waiting_) echoes += std::size_t{waiting.cloud->width} * waiting.cloud->height;
+  return waiting_.size() > most * detector_->cloudsPerTurn() || echoes > most * kUsualScan;
 }
 
 void Pipeline::addOdometry(const nav_msgs::Odometry& odometry) {

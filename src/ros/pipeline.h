@@ -132,6 +132,7 @@ class Pipeline {
   void parse(const WaitingCloud& waiting);
   EchoClock& clockOf(const WaitingCloud& waiting) { return clocks_.of(waiting.cloud->header.frame_id); }
   void observeTimes(WaitingCloud& waiting);
+  bool isQueueTooLong() const;
   void followTimes(const ScanMotion& motion, EchoClock& clock);
   void tellStrangeTimes(EchoClock& clock);
   void place(WaitingCloud cloud);

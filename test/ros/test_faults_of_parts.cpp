@@ -15,12 +15,13 @@ class FaultsOfParts : public FaultsTest {
     ++clouds_sent_;
     clouds_.publish(test::plainCloud(echoes, stamp, frame));
   }
-  /// A tenth of a turn that ends now.
-  void sendPart(std::size_t part) {
-    static const auto turn = test::ring(360);
-    const auto first = turn.begin() + static_cast<std::ptrdiff_t>(36 * part);
-    const double stamp = now_ - kPeriod + kPeriod * static_cast<double>(part + 1) / kParts;
-    sendFrom("lidar", stamp, {first, first + 36});
+  /// One of so many parts of a turn that ends now.
+  void sendPart(std::size_t part, std::size_t parts = kParts) {
+    constexpr std::size_t kEchoes = 100;
+    const auto turn = test::ring(kEchoes * parts);
+    const auto first = turn.begin() + static_cast<std::ptrdiff_t>(kEchoes * part);
+    const double stamp = now_ - kPeriod + kPeriod * static_cast<double>(part + 1) / static_cast<double>(parts);
+    sendFrom("lidar", stamp, {first, first + kEchoes});
   }
   /// A second sensor, 1 m before the vehicle's origin.
   void mountAnother() { transforms_.sendTransform(test::transformAt(0.0, "base_link", "front", 1.0, 0.8)); }
@@ -58,6 +59,22 @@ TEST_F(FaultsOfParts, Lost) {
     expectLabeled(sent);
   }
   conclude("ten parts per turn, a quarter of them and one whole turn lost", "every part that came labelled");
+}
+
+/// Some drivers publish each packet; how many may wait is learned from the turn before.
+TEST_F(FaultsOfParts, PacketsBeforeTheirOdometry) {
+  constexpr std::size_t kPackets = 150;
+  load();
+  sendOdometry(now_);
+  for (std::size_t turn = 0; turn < 5; ++turn) {
+    advance();
+    if (turn == 0) sendOdometry(now_);
+    for (std::size_t packet = 0; packet < kPackets; ++packet) sendPart(packet, kPackets);
+    ASSERT_TRUE(waitForDiagnostic("clouds in", std::to_string(clouds_sent_))) << status_;
+    if (turn > 0) sendOdometry(now_);
+    expectLabeled(kPackets * (turn + 1));
+  }
+  conclude("150 clouds per turn, each turn before its odometry", "every cloud labelled");
 }
 
 TEST_F(FaultsOfParts, ASensorFallsSilent) {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "donex/memory_bound.h"
 #include "ros/pipeline_rig.h"
 
 namespace donex {
@@ -134,6 +135,39 @@ TEST(Pipeline, TheQueueIsBoundedAndTheNewestStay) {
   rig.odometry(100.8);
   rig.run(100.0);
   EXPECT_EQ(rig.stamps(), (std::vector<double>{100.5, 100.6, 100.7}));
+}
+
+/// Sector `part` of 10 of a ring.
+sensor_msgs::PointCloud2ConstPtr partOfARing(int part, double stamp, std::size_t echoes = 1000) {
+  const std::vector<Eigen::Vector3f> all = test::ring(echoes);
+  const auto each = static_cast<std::ptrdiff_t>(echoes / 10);
+  return test::plainCloud({all.begin() + part * each, all.begin() + (part + 1) * each}, stamp);
+}
+
+TEST(Pipeline, ThePartsOfATurnCountAsOneInTheQueue) {
+  Config config = test::smallConfig();
+  config.node.queue_size = 3;
+  PipelineRig rig(config);
+  constexpr double kPart = 0.01;  // [s]
+  const auto send = [&](int first, int last, std::size_t echoes) {
+    for (int k = first; k < last; ++k) {
+      const double stamp = 100.0 + kPart * k;
+      rig.pipeline.addCloud(partOfARing(k % 10, stamp, echoes), stamp);
+    }
+  };
+  for (int k = 0; k < 20; ++k) {
+    rig.odometry(100.0 + kPart * k);
+    send(k, k + 1, 1000);
+    rig.run(100.0 + kPart * k);
+  }
+  ASSERT_EQ(rig.labeled.size(), 20U);
+  // Then the odometry is late.
+  send(20, 60, 1000);
+  EXPECT_EQ(rig.pipeline.waiting(), 30U);
+  EXPECT_EQ(rig.dropped(DropReason::kQueueFull), 10U);
+  // What was a part may be followed by anything: memory stays bounded.
+  send(60, 66, 10 * kUsualScan);
+  EXPECT_EQ(rig.pipeline.waiting(), 3U);
 }
 
 TEST(Pipeline, MissingTransformIsWaitedForThenDropped) {

@@ -113,6 +113,7 @@ class EvidenceDetector : public Detector {
     return memoryCellsOf(places_, clock_, config_.evidence, sights_, judged_.odom_from_points);
   }
 
+  std::size_t cloudsPerTurn() const override { return sights_.turns().cloudsPerTurn(); }
   bool lacksGround() const override { return lacks_ground_; }
 
   GridOutline outline() const override { return places_.window().outline(); }

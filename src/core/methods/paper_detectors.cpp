@@ -99,6 +99,8 @@ class PaperDetector : public Detector {
     before_.clear();
   }
 
+  std::size_t cloudsPerTurn() const override { return turns_.cloudsPerTurn(); }
+
   GridOutline outline() const override { return grid_.window().outline(); }
 
   std::size_t memoryBytes() const override {

@@ -12,6 +12,7 @@ class SampledTurns {
  public:
   /// Takes the next cloud.
   TurnPart arrive(const Scan& scan);
+  std::size_t cloudsPerTurn() const { return turns_.cloudsPerTurn(); }
   void reset() { turns_.reset(); }
 
   std::size_t memoryBytes() const;

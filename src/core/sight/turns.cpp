@@ -1,6 +1,7 @@
 #include "core/sight/turns.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace donex {
 namespace {
@@ -32,7 +33,7 @@ TurnPart Turns::arrive(const Scan& scan, const SightPixels& seen, const Workers&
   }
   const bool looks_again = (again > kBorder && kRepeated * again > all) || (all > 0 && again == all);
   const bool has_enough = hasEnough(seen);
-  const bool may_be_part = comes_in_parts_ || (has_enough && newest_has_enough_);
+  const bool may_be_part = cloudsPerTurn() > 1 || (has_enough && newest_has_enough_);
   const bool goes_on = !is_long && may_be_part && (sensor != nullptr ? !looks_again : is_one_more);
   if (!goes_on) {
     begin_ = scan.stamp;
@@ -46,12 +47,13 @@ TurnPart Turns::arrive(const Scan& scan, const SightPixels& seen, const Workers&
     for (std::size_t c = 0; c < kColumns; ++c) sensor->looked[c] = std::max(sensor->looked[c], columns[c]);
   }
   newest_sensor_ = static_cast<std::size_t>(sensor - sensors_.data());
-  const bool was_in_parts = clouds_ > 1;
-  comes_in_parts_ = goes_on || was_in_parts;
   newest_has_enough_ = has_enough;
-  clouds_ = goes_on ? clouds_ + 1 : 1;
-  if (goes_on) return TurnPart::kContinuing;
-  return was_in_parts ? TurnPart::kFirst : TurnPart::kWhole;
+  if (goes_on) {
+    ++clouds_;
+    return TurnPart::kContinuing;
+  }
+  clouds_before_ = std::exchange(clouds_, 1);
+  return clouds_before_ > 1 ? TurnPart::kFirst : TurnPart::kWhole;
 }
 
 bool Turns::areOne(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {

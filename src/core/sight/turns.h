@@ -1,6 +1,7 @@
 // Which clouds make up one turn (algorithm: "Parts of scans").
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -32,11 +33,12 @@ class Turns {
   const Columns& newest() const { return newest_; }
   /// What its sensor has looked at in the turn so far.
   const Columns& lookedAt() const { return sensors_[newest_sensor_].looked; }
+  /// Of this turn so far or of the one before, whichever has more.
+  std::size_t cloudsPerTurn() const { return std::max({clouds_, clouds_before_, std::size_t{1}}); }
   /// The next cloud begins a turn, after none.
   void reset() {
     sensors_.clear();
-    clouds_ = 0;
-    comes_in_parts_ = false;
+    clouds_ = clouds_before_ = 0;
   }
 
   std::size_t memoryBytes() const { return in_stretch_.capacity() * sizeof(Columns); }
@@ -56,10 +58,9 @@ class Turns {
   Columns columnsOf(const SightPixels& seen, const Workers& workers);
   Sensor* sensorAt(const Eigen::Isometry3d& base_from_sensor);
 
-  double begin_ = 0.0;              ///< [s]
-  std::size_t clouds_ = 0;          ///< of the turn
-  bool comes_in_parts_ = false;     ///< this turn, or the one before
-  bool newest_has_enough_ = false;  ///< echoes to tell that its scan comes in parts
+  double begin_ = 0.0;                          ///< [s]
+  std::size_t clouds_ = 0, clouds_before_ = 0;  ///< of the turn, and of the one before
+  bool newest_has_enough_ = false;              ///< echoes to tell that its scan comes in parts
   std::vector<Sensor> sensors_;
   std::vector<Columns> in_stretch_;  ///< of the newest cloud: with an echo of that stretch
   Columns newest_{};

@@ -52,8 +52,11 @@ TEST(Turns, AFirstPartIsToldByTheTurnBefore) {
   EXPECT_EQ(arrive(0.15, 180.0, 360.0), TurnPart::kContinuing);
   EXPECT_EQ(arrive(0.2, 0.0, 180.0), TurnPart::kFirst);
   EXPECT_EQ(arrive(0.3, 0.0, 180.0), TurnPart::kWhole) << "the turn before was one cloud";
+  EXPECT_EQ(turns.cloudsPerTurn(), 1U);
   EXPECT_EQ(arrive(0.35, 180.0, 360.0), TurnPart::kContinuing);
+  EXPECT_EQ(turns.cloudsPerTurn(), 2U);
   turns.reset();
+  EXPECT_EQ(turns.cloudsPerTurn(), 1U);
   EXPECT_EQ(arrive(0.4, 0.0, 180.0), TurnPart::kWhole) << "nothing was before";
 }
 
