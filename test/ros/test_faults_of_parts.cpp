@@ -68,10 +68,14 @@ TEST_F(FaultsOfParts, PacketsBeforeTheirOdometry) {
   sendOdometry(now_);
   for (std::size_t turn = 0; turn < 5; ++turn) {
     advance();
-    if (turn == 0) sendOdometry(now_);
-    for (std::size_t packet = 0; packet < kPackets; ++packet) sendPart(packet, kPackets);
+    const bool is_first = turn == 0;
+    if (is_first) sendOdometry(now_);
+    for (std::size_t packet = 0; packet < kPackets; ++packet) {
+      sendPart(packet, kPackets);
+      if (is_first) expectLabeled(packet + 1);
+    }
     ASSERT_TRUE(waitForDiagnostic("clouds in", std::to_string(clouds_sent_))) << status_;
-    if (turn > 0) sendOdometry(now_);
+    if (!is_first) sendOdometry(now_);
     expectLabeled(kPackets * (turn + 1));
   }
   conclude("150 clouds per turn, each turn before its odometry", "every cloud labelled");
