@@ -236,14 +236,22 @@ class EvidenceDetector : public Detector {
 
   void write(EchoLabels& labels) const {
     labels.assign(judged_.points.size());
-    const bool is_first_scan = clock_.scan() == 1;  // nothing is known yet
     forEachStretch(workers_, judged_.points.size(), [&](std::size_t first, std::size_t last) {
+      // Bytes may be anything: as members, these would be read again after each label that is written.
+      const Proof* proofs = proofs_.data();
+      const ClusterRole* roles = judged_.roles.data();
+      const Place* places = judged_.places.data();
+      const std::uint8_t* inside = in_voxels_.inside.data();
+      std::uint8_t* dynamic = labels.dynamic.data();
+      std::uint8_t* observed = labels.observed.data();
+      const std::uint8_t knows = clock_.scan() == 1 ? 0 : 1;  // nothing in the first scan
       for (std::size_t i = first; i < last; ++i) {
-        const bool is_moving = proofs_[i] != Proof::kNone;
-        const bool is_ground = judged_.roles[i] != ClusterRole::kConnects;
-        const bool is_known = in_voxels_.inside[i] != 0 && (is_ground || judged_.places[i] != Place::kUnobserved);
-        labels.dynamic[i] = is_moving ? 1 : 0;
-        labels.observed[i] = is_moving || (is_known && !is_first_scan) ? 1 : 0;
+        const auto is_moving = static_cast<std::uint8_t>(proofs[i] != Proof::kNone);
+        const auto is_ground = static_cast<std::uint8_t>(roles[i] != ClusterRole::kConnects);
+        const auto is_seen = static_cast<std::uint8_t>(places[i] != Place::kUnobserved);
+        const auto is_known = static_cast<std::uint8_t>(inside[i] & (is_ground | is_seen) & knows);
+        dynamic[i] = is_moving;
+        observed[i] = static_cast<std::uint8_t>(is_moving | is_known);
       }
     });
   }
