@@ -12,9 +12,9 @@ DONEX_WIDE_LOOPS void projectAll(const Eigen::Vector3f* echoes, const std::uint8
   const auto* xyz = reinterpret_cast<const float*>(echoes);
   for (std::size_t i = 0; i < count; ++i) {
     const SightPixels::Pixel pixel = SightPixels::of(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]);
-    const bool valid = static_cast<int>(pixel.valid) & static_cast<int>(is_echo[i] != 0);
+    const int valid = static_cast<int>(pixel.valid) & static_cast<int>(is_echo[i] != 0);
     columns[i] = pixel.column;
-    rows[i] = valid ? pixel.row : -1;
+    rows[i] = pixel.row | (valid - 1);  // -1 where it is not valid
     ranges[i] = std::min(std::max(pixel.range / SightPixels::kRangeStep, 1.0F), 65535.0F);
   }
 }

@@ -68,14 +68,19 @@ class SightPixels {
   std::vector<Eigen::Vector3f> moved_;  ///< echoes of a part, in the frame of its turn
 };
 
+// Loops over both below are wide only where nothing in them is a branch: compilers make branches of what is computed in
+// one case alone, so that everything here is computed in any case.
+
 /// atan2 to 1e-4 rad, the same on every machine; monotone within an octant, which is all a column needs.
 inline float SightPixels::azimuthOf(float y, float x) {
   const float ax = std::abs(x), ay = std::abs(y);
-  const float a = std::min(ax, ay) / std::max(ax, ay);
+  const auto is_beside = static_cast<float>(ay > ax), is_ahead = 1.0F - is_beside;
+  const float a = (is_beside * ax + is_ahead * ay) / (is_beside * ay + is_ahead * ax);  // the smaller by the larger one
   const float s = a * a;
-  float angle = ((-0.0464964749F * s + 0.15931422F) * s - 0.327622764F) * s * a + a;
-  angle = ay > ax ? 0.5F * kPiF - angle : angle;
-  angle = x < 0.0F ? kPiF - angle : angle;
+  const float in_octant = ((-0.0464964749F * s + 0.15931422F) * s - 0.327622764F) * s * a + a;
+  const float in_quadrant = is_beside * (0.5F * kPiF) + (is_ahead - is_beside) * in_octant;
+  const auto is_behind = static_cast<float>(x < 0.0F);
+  const float angle = is_behind * kPiF + (1.0F - 2.0F * is_behind) * in_quadrant;
   return y < 0.0F ? -angle : angle;
 }
 
@@ -85,9 +90,12 @@ inline SightPixels::Pixel SightPixels::of(float x, float y, float z) {
   const bool valid = static_cast<int>(horizontal > kNearest) & static_cast<int>(horizontal < kFarthest) &
                      static_cast<int>(std::abs(slope) < kSteepest);
   const float turn = (azimuthOf(y, x) + kPiF) * (kColumns / (2.0F * kPiF));
-  const float row = (slope + kSteepest) / kRowHeight;
-  return {valid, static_cast<int>(valid ? turn : 0.0F) & (kColumns - 1), static_cast<int>(valid ? row : 0.0F),
-          std::sqrt(horizontal * horizontal + z * z)};
+  const float rise = (slope + kSteepest) / kRowHeight;
+  // NaN, as the second argument, becomes the first one.
+  const int column = static_cast<int>(std::min<float>(kColumns, std::max(0.0F, turn))) & (kColumns - 1);
+  const int row = static_cast<int>(std::min<float>(kRows, std::max(0.0F, rise)));
+  const int everything = -static_cast<int>(valid);  // all bits, or none
+  return {valid, column & everything, row & everything, std::sqrt(horizontal * horizontal + z * z)};
 }
 
 }  // namespace donex
