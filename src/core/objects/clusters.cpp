@@ -1,12 +1,18 @@
 #include "core/objects/clusters.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "core/grid/line_of_sight.h"
 
 namespace donex {
+namespace {
+
+constexpr std::size_t kBlock = 256;  // echoes of which those that take part are found together
+
+}  // namespace
 
 Clusters::Clusters(double reach, const Options& options)
     : options_(options),
@@ -17,78 +23,69 @@ Clusters::Clusters(double reach, const Options& options)
 
 int Clusters::widthOf(double reach, double cell) { return 2 * static_cast<int>(std::ceil(reach / cell)) + 1; }
 
-int& Clusters::makeCell(std::size_t x_y, int z) {
-  int& column = column_at_[x_y];
+int Clusters::makeCell(int x_y, int z) {
+  int& column = column_at_[static_cast<std::size_t>(x_y)];
   if (column == kNone) {
-    column = static_cast<int>(cell_in_column_.size()) / layers_;
+    column = static_cast<int>(columns_.size());
+    columns_.push_back({x_y % width_, x_y / width_});
     cell_in_column_.resize(cell_in_column_.size() + static_cast<std::size_t>(layers_), kNone);
   }
-  return cell_in_column_[placeOf(column, z)];
+  int& cell = cell_in_column_[static_cast<std::size_t>(column) * static_cast<std::size_t>(layers_) +
+                              static_cast<std::size_t>(z)];
+  if (cell == kNone) {
+    cell = static_cast<int>(parents_.size());
+    parents_.push_back(cell);
+  }
+  return cell;
+}
+
+/// The cell right above an echo near the ground, or kNone.
+int Clusters::cellAbove(int x_y) const {
+  const int column = column_at_[static_cast<std::size_t>(x_y)];
+  if (column == kNone) return kNone;
+  const int* cells = cellsOf(column);
+  return cells[0] == kNone && layers_ > 1 ? cells[1] : cells[0];
 }
 
 void Clusters::connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
                        const std::vector<float>& heights, const std::vector<ClusterRole>& roles,
                        const Workers& workers) {
-  constexpr std::size_t kCells = 512;  // far ones have more neighbours to look at
-  findColumns(sensor, echoes, heights, roles, workers);
-  fill(heights, roles);
-  attachLowEchoes();
+  constexpr std::size_t kColumns = 256;  // far ones have more neighbours to look at
+  fill(sensor, echoes, heights, roles);
   const auto join_some = [&](std::size_t first, std::size_t last) {
-    for (std::size_t cell = first; cell < last; ++cell) join(static_cast<int>(cell));
+    for (std::size_t column = first; column < last; ++column) join(static_cast<int>(column));
   };
   is_shared_ = workers.threads() > 1;
-  forEachStretch(workers, cells_.size(), join_some, kCells);
-  number();
-  for (const Cell& cell : cells_) column_at_[columnOf(cell.x, cell.y)] = kNone;
-}
-
-/// Of all echoes that take part.
-void Clusters::findColumns(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
-                           const std::vector<float>& heights, const std::vector<ClusterRole>& roles,
-                           const Workers& workers) {
-  const auto highest = static_cast<float>(options_.height);
-  of_.resize(echoes.size());
-  const auto column_of = [&](std::size_t i) {
-    const bool takes_part = roles[i] == ClusterRole::kConnects || roles[i] == ClusterRole::kFollows;
-    const bool in_height = takes_part && heights[i] >= 0.0F && heights[i] <= highest;
-    if (!in_height) return int{kNone};
-    const int x = floorToInt((echoes[i].x() - sensor.x()) * per_cell_) + width_ / 2;
-    const int y = floorToInt((echoes[i].y() - sensor.y()) * per_cell_) + width_ / 2;
-    const bool in_square = x >= 0 && x < width_ && y >= 0 && y < width_;
-    return in_square ? static_cast<int>(columnOf(x, y)) : int{kNone};
-  };
-  forEachStretch(workers, echoes.size(), [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) of_[i] = column_of(i);
-  });
+  forEachStretch(workers, columns_.size(), join_some, kColumns);
+  number(echoes.size());
+  for (const Column& column : columns_) column_at_[columnOf(column.x, column.y)] = kNone;
 }
 
 /// Cells are numbered in the order of their first echoes.
-void Clusters::fill(const std::vector<float>& heights, const std::vector<ClusterRole>& roles) {
-  cells_.clear();
+void Clusters::fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
+                    const std::vector<float>& heights, const std::vector<ClusterRole>& roles) {
+  parents_.clear();
+  columns_.clear();
   cell_in_column_.clear();
-  low_echoes_.clear();
-  for (std::size_t i = 0; i < of_.size(); ++i) {
-    const int column = of_[i];
-    if (column == kNone) continue;
-    if (roles[i] == ClusterRole::kFollows) {
-      low_echoes_.push_back({static_cast<int>(i), column});
-      of_[i] = kNone;
-      continue;
+  members_.clear();
+  const auto highest = static_cast<float>(options_.height);
+  std::array<std::uint32_t, kBlock> taking_part;
+  for (std::size_t first = 0; first < echoes.size(); first += kBlock) {
+    std::size_t count = 0;
+    for (std::size_t i = first; i < std::min(first + kBlock, echoes.size()); ++i) {
+      const bool takes_part = roles[i] == ClusterRole::kConnects || roles[i] == ClusterRole::kFollows;
+      taking_part[count] = static_cast<std::uint32_t>(i);
+      count += takes_part ? 1U : 0U;  // written in any case: no branch to guess
     }
-    const int z = static_cast<int>(heights[i] * per_cell_);
-    int& cell = makeCell(static_cast<std::size_t>(column), z);
-    if (cell == kNone) {
-      cell = static_cast<int>(cells_.size());
-      cells_.push_back({column % width_, column / width_, z, cell});
-    }
-    of_[i] = cell;
-  }
-}
-
-void Clusters::attachLowEchoes() {
-  for (const auto& [echo, column] : low_echoes_) {
-    for (int z = 0; z <= std::min(1, layers_ - 1) && of_[static_cast<std::size_t>(echo)] == kNone; ++z) {
-      of_[static_cast<std::size_t>(echo)] = cellAt(static_cast<std::size_t>(column), z);
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::uint32_t i = taking_part[k];
+      const int x = floorToInt((echoes[i].x() - sensor.x()) * per_cell_) + width_ / 2;
+      const int y = floorToInt((echoes[i].y() - sensor.y()) * per_cell_) + width_ / 2;
+      const bool is_in = heights[i] >= 0.0F && heights[i] <= highest && x >= 0 && x < width_ && y >= 0 && y < width_;
+      if (!is_in) continue;
+      const int x_y = y * width_ + x;
+      const bool follows = roles[i] == ClusterRole::kFollows;
+      members_.push_back({i, follows ? ~x_y : makeCell(x_y, static_cast<int>(heights[i] * per_cell_))});
     }
   }
 }
@@ -96,7 +93,7 @@ void Clusters::attachLowEchoes() {
 int Clusters::rootOf(int cell) {
   for (int parent = parentOf(cell); parent != cell; parent = parentOf(cell)) {
     const int above = parentOf(parent);
-    __atomic_store_n(&cells_[static_cast<std::size_t>(cell)].parent, above, __ATOMIC_RELAXED);
+    __atomic_store_n(&parents_[static_cast<std::size_t>(cell)], above, __ATOMIC_RELAXED);
     cell = above;
   }
   return cell;
@@ -109,7 +106,7 @@ int Clusters::unite(int a, int b) {
     b = rootOf(b);
     if (a == b) return a;
     if (a > b) std::swap(a, b);
-    int& parent = cells_[static_cast<std::size_t>(b)].parent;
+    int& parent = parents_[static_cast<std::size_t>(b)];
     int still_root = b;
     if (!is_shared_) {
       parent = a;  // one thread need not wait for the memory of others
@@ -119,43 +116,64 @@ int Clusters::unite(int a, int b) {
   }
 }
 
-void Clusters::join(int cell) {
-  const Cell& here = cells_[static_cast<std::size_t>(cell)];
+void Clusters::join(int column) {
+  const int* cells = cellsOf(column);
+  for (int z = 0; z < layers_; ++z) {
+    if (cells[z] == kNone) continue;
+    const int first = z;
+    while (z + 1 < layers_ && cells[z + 1] != kNone) ++z;
+    joinRun(columns_[static_cast<std::size_t>(column)], cells, first, z);
+  }
+}
+
+/// Cells right above one another touch at any range: a run of them is joined as one, and asks of its neighbours' runs
+/// only where each begins.
+void Clusters::joinRun(const Column& here, const int* cells, int first_z, int last_z) {
   const double cells_away = std::hypot(here.x - width_ / 2, here.y - width_ / 2);
   const int across = std::max(1, static_cast<int>(std::ceil(cells_away * options_.across_angle)));
   const int up = std::max(1, static_cast<int>(std::ceil(cells_away * options_.up_angle)));
-  const int last_z = std::min(here.z + up, layers_ - 1);
+  const int last_near = std::min(last_z + up, layers_ - 1);
   const int first_x = std::max(here.x - across, 0), last_x = std::min(here.x + across, width_ - 1);
   const int first_y = std::max(here.y - across, 0), last_y = std::min(here.y + across, width_ - 1);
-  int root = rootOf(cell);
-  // The half of the neighbourhood behind this cell finds it from there.
+  int root = rootOf(cells[first_z]);
+  for (int z = first_z + 1; z <= last_z; ++z) root = unite(root, cells[z]);
+  // The half of the neighbourhood below this run finds it from there.
   for (int y = first_y; y <= last_y; ++y) {
     for (int x = first_x; x <= last_x; ++x) {
       const int column = column_at_[columnOf(x, y)];
       if (column == kNone) continue;
-      const int* cell_at = cell_in_column_.data() + static_cast<std::ptrdiff_t>(column) * layers_;
-      for (int z = here.z; z <= last_z; ++z) {
-        const bool joins = cell_at[z] != kNone && parentOf(cell_at[z]) != root;
+      const int* cell_at = cellsOf(column);
+      int below = kNone;
+      for (int z = first_z; z <= last_near; ++z) {
+        const bool joins = cell_at[z] != kNone && below == kNone && parentOf(cell_at[z]) != root;
         if (joins) root = unite(root, cell_at[z]);
+        below = cell_at[z];
       }
     }
   }
 }
 
-void Clusters::number() {
-  // Numbered in the order of their first echoes: independent of how the cells were joined.
-  number_of_root_.assign(cells_.size(), kNone);
+/// In the order of their first echoes: independent of how the cells were joined.
+void Clusters::number(std::size_t echoes) {
+  // No parent is behind its cell, so that all of them have met their roots already.
+  for (int& parent : parents_) parent = parents_[static_cast<std::size_t>(parent)];
+  number_of_root_.assign(parents_.size(), kNone);
   echoes_in_.clear();
-  for (int& of : of_) {
-    if (of == kNone) continue;
-    int& number = number_of_root_[static_cast<std::size_t>(rootOf(of))];
+  of_.assign(echoes, kNone);
+  std::size_t stay = 0;
+  for (const auto& [echo, at] : members_) {
+    const int cell = at < 0 ? cellAbove(~at) : at;
+    if (cell == kNone) continue;
+    int& number = number_of_root_[static_cast<std::size_t>(parents_[static_cast<std::size_t>(cell)])];
     if (number == kNone) {
       number = count();
       echoes_in_.push_back(0);
     }
     ++echoes_in_[static_cast<std::size_t>(number)];
-    of = number;
+    of_[echo] = number;
+    members_[stay++] = {echo, number};
   }
+  members_.resize(stay);
 }
 
 int Clusters::countWithin(std::size_t echoes) const {
@@ -168,8 +186,9 @@ int Clusters::countWithin(std::size_t echoes) const {
 double Clusters::bytesFor(double reach, const Options& options, double echoes, double connected) {
   constexpr double kEchoesACell = 6.0, kCellsAColumn = 3.0;
   const double columns = connected / kEchoesACell / kCellsAColumn, layers = options.height / options.cell + 1.0;
-  const double a_cell = sizeof(Cell) + sizeof(int) + layers / kCellsAColumn * sizeof(int);
-  return sizeof(int) * (std::pow(widthOf(reach, options.cell), 2) + echoes) + kCellsAColumn * columns * a_cell;
+  const double a_column = sizeof(Column) + (layers + 2.0 * kCellsAColumn) * sizeof(int);
+  return sizeof(int) * (std::pow(widthOf(reach, options.cell), 2) + echoes) + columns * a_column +
+         connected * sizeof(Member);
 }
 
 Clusters::Options clustersOf(const ObjectConfig& config, double finer) {
@@ -180,10 +199,10 @@ Clusters::Options clustersOf(const ObjectConfig& config, double finer) {
 }
 
 std::size_t Clusters::memoryBytes() const {
-  const std::size_t numbers =
-      column_at_.capacity() + cell_in_column_.capacity() + of_.capacity() + number_of_root_.capacity();
-  return numbers * sizeof(int) + cells_.capacity() * sizeof(Cell) + echoes_in_.capacity() * sizeof(std::size_t) +
-         low_echoes_.capacity() * sizeof(low_echoes_[0]);
+  const std::size_t numbers = column_at_.capacity() + cell_in_column_.capacity() + parents_.capacity() +
+                              of_.capacity() + number_of_root_.capacity();
+  return numbers * sizeof(int) + columns_.capacity() * sizeof(Column) + members_.capacity() * sizeof(Member) +
+         echoes_in_.capacity() * sizeof(std::size_t);
 }
 
 }  // namespace donex

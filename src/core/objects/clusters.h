@@ -1,7 +1,7 @@
 // Connected echoes (algorithm: "Clusters").
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -36,6 +36,13 @@ class Clusters {
   int count() const { return static_cast<int>(echoes_in_.size()); }
   /// Clusters with any of the first `echoes`: these come first.
   int countWithin(std::size_t echoes) const;
+  /// An echo of a cluster.
+  struct Member {
+    std::uint32_t echo;
+    int cluster;
+  };
+  /// Of all clusters, in the order of the echoes.
+  const std::vector<Member>& members() const { return members_; }
   std::size_t echoesIn(int cluster) const { return echoes_in_[static_cast<std::size_t>(cluster)]; }
 
   std::size_t memoryBytes() const;
@@ -44,47 +51,41 @@ class Clusters {
   static double bytesFor(double reach, const Options& options, double echoes, double connected);
 
  private:
-  struct Cell {
-    int x, y, z;
-    int parent;  ///< union-find over cells
+  /// Cells above one another.
+  struct Column {
+    int x, y;
   };
 
-  /// Number of the cell, or kNone. Columns are dense, their cells are held only where there is one. `x_y`: see
-  /// columnOf.
-  int cellAt(std::size_t x_y, int z) const {
-    const int column = column_at_[x_y];
-    return column == kNone ? kNone : cell_in_column_[placeOf(column, z)];
-  }
   std::size_t columnOf(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
   }
-  std::size_t placeOf(int column, int z) const {
-    return static_cast<std::size_t>(column) * static_cast<std::size_t>(layers_) + static_cast<std::size_t>(z);
+  /// The cells of a column by z: their numbers, or kNone.
+  const int* cellsOf(int column) const {
+    return cell_in_column_.data() + static_cast<std::ptrdiff_t>(column) * layers_;
   }
   static int widthOf(double reach, double cell);
-  int& makeCell(std::size_t x_y, int z);
+  int makeCell(int x_y, int z);
+  int cellAbove(int x_y) const;
   /// Others may join cells at the same time: what is read is old at worst, and a parent's parent serves as well.
-  int parentOf(int cell) const {
-    return __atomic_load_n(&cells_[static_cast<std::size_t>(cell)].parent, __ATOMIC_RELAXED);
-  }
+  int parentOf(int cell) const { return __atomic_load_n(&parents_[static_cast<std::size_t>(cell)], __ATOMIC_RELAXED); }
   int rootOf(int cell);
   int unite(int a, int b);
-  void findColumns(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
-                   const std::vector<float>& heights, const std::vector<ClusterRole>& roles, const Workers& workers);
-  void fill(const std::vector<float>& heights, const std::vector<ClusterRole>& roles);
-  void attachLowEchoes();
-  void join(int cell);
-  void number();
+  void fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
+            const std::vector<float>& heights, const std::vector<ClusterRole>& roles);
+  void join(int column);
+  void joinRun(const Column& here, const int* cells, int first_z, int last_z);
+  void number(std::size_t echoes);
 
   Options options_;
   float per_cell_;  ///< [1/m]
   int width_, layers_;
   bool is_shared_ = false;           ///< several threads join cells
   std::vector<int> column_at_;       ///< by x, y: number of the column, or kNone
+  std::vector<Column> columns_;      ///< dense, in the order of their first echoes
   std::vector<int> cell_in_column_;  ///< by column, z: number of the cell, or kNone
-  std::vector<Cell> cells_;
-  std::vector<int> of_;  ///< by echo: where its column is, then its cell, and in the end its cluster
-  std::vector<std::array<int, 2>> low_echoes_;  ///< echo, and where its column is
+  std::vector<int> parents_;         ///< by cell: union-find
+  std::vector<int> of_;              ///< by echo: its cluster
+  std::vector<Member> members_;      ///< before they are numbered, `cluster` is the cell, or ~columnOf what is above
   std::vector<int> number_of_root_;
   std::vector<std::size_t> echoes_in_;  ///< by cluster
 };

@@ -46,10 +46,9 @@ void Segmenter::append(const JudgedScan& scan, Segments& segments, const Workers
     segment_of_[static_cast<std::size_t>(cluster)] = segments.size();
     segments.add(clusters_.echoesIn(cluster));
   }
-  for (std::size_t i = 0; i < scan.points.size(); ++i) {
-    if (clusters_.of(i) == Clusters::kNone) continue;
-    const std::size_t segment = segment_of_[static_cast<std::size_t>(clusters_.of(i))];
-    if (segment != kTooSmall) segments[segment].echoes.push_back(static_cast<std::uint32_t>(i));
+  for (const auto& [echo, cluster] : clusters_.members()) {
+    const std::size_t segment = segment_of_[static_cast<std::size_t>(cluster)];
+    if (segment != kTooSmall) segments[segment].echoes.push_back(echo);
   }
   const auto describe = [&](std::size_t i) { describeEchoes(scan, segments[first + i]); };
   workers.each(segments.size() - first, std::ref(describe));
