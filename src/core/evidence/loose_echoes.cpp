@@ -44,13 +44,9 @@ std::size_t LooseEchoes::pixelOf(int column, int row) const {
 
 /// The ranges by pixel: a counting sort over the rows that there are.
 void LooseEchoes::sort(const SightPixels& seen) {
-  int highest = -1;
-  lowest_row_ = SightPixels::kRows;
-  for (const std::int32_t row : seen.rows()) {
-    highest = std::max(highest, row);
-    lowest_row_ = std::min(lowest_row_, row < 0 ? SightPixels::kRows : row);
-  }
-  rows_ = std::max(highest - lowest_row_ + 1, 0);
+  const SightPixels::Span span = seen.span();
+  lowest_row_ = span.lowest;
+  rows_ = std::max(span.highest - span.lowest + 1, 0);
   if (first_in_.empty()) first_in_.reserve(static_cast<std::size_t>(SightPixels::kColumns) * SightPixels::kRows + 1);
   first_in_.assign(static_cast<std::size_t>(SightPixels::kColumns) * static_cast<std::size_t>(rows_) + 1, 0);
   for (std::size_t i = 0; i < seen.size(); ++i) {

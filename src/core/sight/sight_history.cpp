@@ -4,6 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/grid/simd.h"
+
 namespace donex {
 namespace {
 
@@ -91,8 +93,9 @@ std::size_t SightHistory::countBefore() const {
 
 SightView SightHistory::view(std::size_t newest, const Eigen::Isometry3d& odom_from_points) const {
   SightView view;
+  view.margin_ = margin_;
   for (std::size_t i = newest; i-- > 0;) {
-    view.kept_[view.count_++] = {kept_[i].stamp, sightOf(kept_[i], odom_from_points)};
+    view.add(kept_[i].stamp, sightOf(kept_[i], odom_from_points));
   }
   return view;
 }
@@ -118,20 +121,51 @@ ScanSight SightHistory::newestSeenFrom(const Eigen::Isometry3d& odom_from_points
   return sight;
 }
 
-SightView::Evidence SightView::ask(const Eigen::Vector3f& point, double since, int enough) const {
-  Evidence evidence;
-  for (std::size_t i = 0; i < count_ && kept_[i].stamp > since; ++i) {
-    switch (kept_[i].sight.at(point)) {
-      case SightImage::Sight::kFree: ++evidence.free; break;
-      case SightImage::Sight::kSurface:
-        ++evidence.surface;
-        evidence.stale_surface += evidence.free > 0 ? 1 : 0;
-        evidence.lasting_surface += kept_[0].stamp - kept_[i].stamp >= Evidence::kApproach ? 1 : 0;
-        break;
-      case SightImage::Sight::kHidden: ++evidence.hidden; break;
-      case SightImage::Sight::kUnknown: break;
+void SightView::add(double stamp, const ImageSight& sight) {
+  kept_[count_] = {stamp, sight.image};
+  for (std::size_t row = 0; row < 3; ++row) {
+    const auto axis = static_cast<Eigen::Index>(row);
+    for (std::size_t column = 0; column < 3; ++column) {
+      placements_.rotation[row][column][count_] =
+          sight.sensor_from_points.linear()(axis, static_cast<Eigen::Index>(column));
     }
-    if (evidence.free >= enough) break;
+    placements_.translation[row][count_] = sight.sensor_from_points.translation()[axis];
+  }
+  ++count_;
+}
+
+/// In the first `count` images. The order of the sums is Eigen's.
+inline void SightView::place(const Eigen::Vector3f& point, std::size_t count, Pixels& pixels) const {
+  const auto& [to_x, to_y, to_z] = placements_.rotation;
+  const auto& [x, y, z] = placements_.translation;
+  const float a = point.x(), b = point.y(), c = point.z();
+  for (std::size_t i = 0; i < count; ++i) {
+    const SightPixels::Pixel pixel = SightPixels::of(to_x[0][i] * a + to_x[1][i] * b + to_x[2][i] * c + x[i],
+                                                     to_y[0][i] * a + to_y[1][i] * b + to_y[2][i] * c + y[i],
+                                                     to_z[0][i] * a + to_z[1][i] * b + to_z[2][i] * c + z[i]);
+    pixels.valid[i] = static_cast<std::int32_t>(pixel.valid);
+    pixels.column[i] = pixel.column;
+    pixels.row[i] = pixel.row;
+    pixels.range[i] = pixel.range;
+  }
+}
+
+DONEX_WIDE_LOOPS SightView::Evidence SightView::ask(const Eigen::Vector3f& point, double since, int enough) const {
+  std::size_t count = 0;
+  while (count < count_ && kept_[count].stamp > since) ++count;
+  Pixels pixels;
+  place(point, count, pixels);
+  Evidence evidence;
+  for (std::size_t i = 0; i < count && evidence.free < enough; ++i) {
+    const SightPixels::Pixel pixel{pixels.valid[i] != 0, pixels.column[i], pixels.row[i], pixels.range[i]};
+    const SightImage::Sight sight = kept_[i].image->atPixel(pixel, margin_);
+    // Counted without a branch: neighbouring scans differ in what they say.
+    const int is_surface = sight == SightImage::Sight::kSurface ? 1 : 0;
+    evidence.stale_surface += evidence.free > 0 ? is_surface : 0;
+    evidence.lasting_surface += kept_[0].stamp - kept_[i].stamp >= Evidence::kApproach ? is_surface : 0;
+    evidence.surface += is_surface;
+    evidence.free += sight == SightImage::Sight::kFree ? 1 : 0;
+    evidence.hidden += sight == SightImage::Sight::kHidden ? 1 : 0;
   }
   return evidence;
 }

@@ -13,13 +13,10 @@ namespace donex {
 
 class SightHistory;
 
-/// What one image holds, asked in points of the frame it was made for [m].
+/// An image, and how points of the frame it is asked in lie before it [m].
 struct ImageSight {
   const SightImage* image = nullptr;
   Eigen::Isometry3f sensor_from_points = Eigen::Isometry3f::Identity();
-  float margin = 0.0F;  ///< [m]
-
-  SightImage::Sight at(const Eigen::Vector3f& point) const { return image->at(sensor_from_points * point, margin); }
 };
 
 /// What was seen last in each direction, asked in points of the frame it was made for [m].
@@ -75,13 +72,30 @@ class SightView {
   friend class SightHistory;
   /// Made anew for each scan, on the stack: as many as SightHistory keeps.
   static constexpr std::size_t kMostScans = 128;
+  template <class Number>
+  using PerScan = std::array<Number, kMostScans>;
   struct Kept {
     double stamp;
-    ImageSight sight;
+    const SightImage* image;
+  };
+  /// sensor_from_points of every image, number by number: a point is placed in all of them together.
+  struct Placements {
+    std::array<std::array<PerScan<float>, 3>, 3> rotation;  ///< by row, then column
+    std::array<PerScan<float>, 3> translation;              ///< [m]
+  };
+  /// Where a point lies in the images, as SightPixels::Pixel.
+  struct Pixels {
+    PerScan<std::int32_t> valid, column, row;
+    PerScan<float> range;  ///< [m]
   };
 
-  std::array<Kept, kMostScans> kept_;  ///< newest first
+  void add(double stamp, const ImageSight& sight);
+  void place(const Eigen::Vector3f& point, std::size_t count, Pixels& pixels) const;
+
+  PerScan<Kept> kept_;  ///< newest first
+  Placements placements_;
   std::size_t count_ = 0;
+  float margin_ = 0.0F;  ///< [m]
 };
 
 /// Free evidence (algorithm: "Free evidence"): "never hit before" is not "was free before".
@@ -137,7 +151,7 @@ class SightHistory {
   /// Images of turns before the present one.
   std::size_t countBefore() const;
   ImageSight sightOf(const Kept& kept, const Eigen::Isometry3d& odom_from_points) const {
-    return {&kept.image, (kept.sensor_from_odom * odom_from_points).cast<float>(), margin_};
+    return {&kept.image, (kept.sensor_from_odom * odom_from_points).cast<float>()};
   }
 
   double length_, spacing_;

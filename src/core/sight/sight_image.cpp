@@ -1,13 +1,11 @@
 #include "core/sight/sight_image.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace donex {
 namespace {
 
 constexpr int kColumns = SightPixels::kColumns;
-constexpr float kRangeStep = SightPixels::kRangeStep;
 /// Of an image that covers everything.
 constexpr auto kPixels = static_cast<std::size_t>(kColumns) * static_cast<std::size_t>(SightPixels::kRows);
 constexpr int kMoreRows = 8;   // when parts of a turn reach beyond those before, they may do so again
@@ -54,11 +52,7 @@ void SightImage::add(const SightPixels& seen, const Reading& reading, Workspace&
 
 /// False where nothing was seen.
 bool SightImage::makeRoomFor(const SightPixels& seen, Workspace& workspace) {
-  int lowest = std::numeric_limits<int>::max(), highest = -1;
-  for (const std::int32_t row : seen.rows()) {
-    lowest = std::min(lowest, row < 0 ? lowest : row);
-    highest = std::max(highest, row);
-  }
+  const auto [lowest, highest] = seen.span();
   if (highest < 0) return false;
   if (rows_ == 0) {
     first_row_ = lowest;
@@ -180,26 +174,6 @@ void SightImage::erodeAcross(int column, const std::vector<Range>& between, cons
 bool SightImage::looksAt(const Eigen::Vector3f& point) const {
   const SightPixels::Pixel pixel = SightPixels::of(point);
   return pixel.valid && covered_[static_cast<std::size_t>(pixel.column)] != 0;
-}
-
-SightImage::Sight SightImage::at(const Eigen::Vector3f& point, float margin) const {
-  return read(nearest_, point, margin);
-}
-
-SightImage::Sight SightImage::throughGaps(const Eigen::Vector3f& point, float margin) const {
-  return read(hit_, point, margin);
-}
-
-SightImage::Sight SightImage::read(const std::vector<Range>& image, const Eigen::Vector3f& point, float margin) const {
-  const SightPixels::Pixel pixel = SightPixels::of(point);
-  if (!pixel.valid) return Sight::kUnknown;
-  const int row = pixel.row - first_row_;
-  if (row < 0 || row >= rows_ || image.empty()) return Sight::kUnknown;
-  const Range nearest = image[static_cast<std::size_t>(startOf(pixel.column) + row)];
-  if (nearest == 0) return Sight::kUnknown;
-  const float beyond = static_cast<float>(nearest) * kRangeStep - pixel.range;
-  if (beyond > margin) return Sight::kFree;
-  return beyond > -margin ? Sight::kSurface : Sight::kHidden;
 }
 
 double SightImage::answerBytes() { return static_cast<double>(kPixels * sizeof(Range)); }

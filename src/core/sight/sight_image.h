@@ -37,8 +37,8 @@ class SightImage {
   };
 
   SightImage() = default;
-  /// Moved, never copied: with Eigen 3.3 a vector of what also holds a pose would copy its elements as it grows, and copies
-  /// lack the reserved storage.
+  /// Moved, never copied: with Eigen 3.3 a vector of what also holds a pose would copy its elements as it grows, and
+  /// copies lack the reserved storage.
   SightImage(SightImage&&) = default;
   SightImage& operator=(SightImage&&) = default;
 
@@ -63,10 +63,13 @@ class SightImage {
 
   /// What the scan says of a point of its sensor frame [m]: free where it saw at least `margin` [m]
   /// beyond, surface within the margin, hidden behind one, or nothing known.
-  Sight at(const Eigen::Vector3f& point, float margin) const;
+  Sight at(const Eigen::Vector3f& point, float margin) const { return atPixel(SightPixels::of(point), margin); }
+  Sight atPixel(const SightPixels::Pixel& pixel, float margin) const { return read(nearest_, pixel, margin); }
 
   /// The same of the single lines of sight, not read carefully; unknown once they were handed on.
-  Sight throughGaps(const Eigen::Vector3f& point, float margin) const;
+  Sight throughGaps(const Eigen::Vector3f& point, float margin) const {
+    return read(hit_, SightPixels::of(point), margin);
+  }
 
   std::size_t memoryBytes() const;
   /// What an image's answers take, whatever the sensor covers [bytes]: it is reserved, and only what it covers is used.
@@ -78,7 +81,7 @@ class SightImage {
   using Range = std::uint16_t;  ///< [kRangeStep], rounded down; 0 where nothing is known
   using Columns = std::array<std::uint8_t, SightPixels::kColumns>;
 
-  Sight read(const std::vector<Range>& image, const Eigen::Vector3f& point, float margin) const;
+  Sight read(const std::vector<Range>& image, const SightPixels::Pixel& pixel, float margin) const;
   bool makeRoomFor(const SightPixels& seen, Workspace& workspace);
   void layOut(std::vector<Range>& image, int first_row, int rows, std::vector<Range>& scratch) const;
   Columns collect(const SightPixels& seen);
@@ -97,5 +100,16 @@ class SightImage {
   std::vector<Range> hit_;        ///< the same, of single lines of sight
   Columns covered_{};             ///< 1 where an echo came back, or in a column beside
 };
+
+inline SightImage::Sight SightImage::read(const std::vector<Range>& image, const SightPixels::Pixel& pixel,
+                                          float margin) const {
+  const int row = pixel.row - first_row_;
+  const bool is_covered = pixel.valid && row >= 0 && row < rows_ && !image.empty();
+  if (!is_covered) return Sight::kUnknown;
+  const Range nearest = image[static_cast<std::size_t>(startOf(pixel.column) + row)];
+  const float beyond = static_cast<float>(nearest) * SightPixels::kRangeStep - pixel.range;
+  const Sight sight = beyond > margin ? Sight::kFree : beyond > -margin ? Sight::kSurface : Sight::kHidden;
+  return nearest == 0 ? Sight::kUnknown : sight;
+}
 
 }  // namespace donex

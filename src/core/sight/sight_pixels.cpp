@@ -19,7 +19,18 @@ DONEX_WIDE_LOOPS void projectAll(const Eigen::Vector3f* echoes, const std::uint8
   }
 }
 
+DONEX_WIDE_LOOPS SightPixels::Span spanOf(const std::int32_t* rows, std::size_t count) {
+  int lowest = SightPixels::kRows, highest = -1;
+  for (std::size_t i = 0; i < count; ++i) {
+    lowest = std::min(lowest, rows[i] < 0 ? SightPixels::kRows : rows[i]);
+    highest = std::max(highest, rows[i]);
+  }
+  return {lowest, highest};
+}
+
 }  // namespace
+
+SightPixels::Span SightPixels::span() const { return spanOf(rows_.data(), rows_.size()); }
 
 void SightPixels::project(const std::vector<Eigen::Vector3f>& echoes, const std::vector<std::uint8_t>& is_echo,
                           const Workers& workers) {

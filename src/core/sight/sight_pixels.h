@@ -47,7 +47,11 @@ class SightPixels {
   int column(std::size_t echo) const { return columns_[echo]; }
   int row(std::size_t echo) const { return rows_[echo]; }        ///< -1 where the echo lies nowhere
   float range(std::size_t echo) const { return ranges_[echo]; }  ///< [kRangeStep], 1 to 65535
-  const std::vector<std::int32_t>& rows() const { return rows_; }
+  /// From the lowest to the highest row that holds an echo; where there is none, the lowest one is above the highest.
+  struct Span {
+    int lowest, highest;
+  };
+  Span span() const;
 
   std::size_t memoryBytes() const {
     return 3 * columns_.capacity() * sizeof(float) + moved_.capacity() * sizeof(Eigen::Vector3f);
