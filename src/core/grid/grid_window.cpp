@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/grid/simd.h"
 #include "core/grid/storage.h"
 
 namespace donex {
@@ -25,6 +26,24 @@ Region sweptRegion(const Region& r) {
 
 Region coveredRegion(const Config& config) {
   return config.compensation == Compensation::kScroll ? sweptRegion(config.region) : config.region;
+}
+
+/// The echoes of a block, one after the other.
+DONEX_WIDE_LOOPS void interleave(const EchoBlock& block, Eigen::Vector3f* echoes) {
+  auto* xyz = reinterpret_cast<float*>(echoes);
+  for (int i = 0; i < block.count; ++i) {
+    xyz[3 * i] = block.x[i];
+    xyz[3 * i + 1] = block.y[i];
+    xyz[3 * i + 2] = block.z[i];
+  }
+}
+
+DONEX_WIDE_LOOPS void scaleAll(const Eigen::Vector3f* echoes, std::size_t count, float scale, Eigen::Vector3f* scaled,
+                               std::uint8_t* is_echo) {
+  const auto* xyz = reinterpret_cast<const float*>(echoes);
+  auto* to = reinterpret_cast<float*>(scaled);
+  for (std::size_t i = 0; i < 3 * count; ++i) to[i] = xyz[i] * scale;
+  for (std::size_t i = 0; i < count; ++i) is_echo[i] = static_cast<std::uint8_t>(!std::isnan(xyz[3 * i]));
 }
 
 }  // namespace
@@ -92,10 +111,8 @@ void GridWindow::beginScan(const Scan& scan, GridScan& result) const {
 
 void GridWindow::enterSome(const Scan& scan, std::size_t first, std::size_t last, GridScan& result) const {
   const auto keep = [&](std::size_t begin, const EchoBlock& block) {
-    for (int i = 0; i < block.count; ++i) {
-      result.echoes[begin + static_cast<std::size_t>(i)] = {block.x[i], block.y[i], block.z[i]};
-      result.inside[begin + static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(block.inside[i]);
-    }
+    interleave(block, result.echoes.data() + begin);
+    std::copy_n(block.observed.data(), block.count, result.inside.data() + begin);
   };
   forEachBlock(placementOf(scan), scan.echoes, first / EchoBlock::kSize, blocksOf(last), keep);
 }
@@ -114,11 +131,8 @@ void placePoints(const GridWindow& window, const GridScan& scan, std::vector<Eig
 
 void placeSomePoints(const GridWindow& window, const GridScan& scan, std::size_t first, std::size_t last,
                      std::vector<Eigen::Vector3f>& points, std::vector<std::uint8_t>& is_echo) {
-  const auto size = static_cast<float>(window.voxelSize());
-  for (std::size_t i = first; i < last; ++i) {
-    points[i] = scan.echoes[i] * size;
-    is_echo[i] = std::isnan(scan.echoes[i].x()) ? 0 : 1;
-  }
+  scaleAll(scan.echoes.data() + first, last - first, static_cast<float>(window.voxelSize()), points.data() + first,
+           is_echo.data() + first);
 }
 
 bool isBefore(const Index3& a, const Index3& b) {
