@@ -6,6 +6,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "core/grid/line_of_sight.h"
 #include "core/grid/simd.h"
 #include "core/grid/storage.h"
 #include "core/pi.h"
@@ -13,7 +14,7 @@
 namespace donex {
 namespace {
 
-constexpr int kReach = 2;      // cells over which the ground is continued; a bit per neighbour, see Cell::nearer
+constexpr int kReach = 2;      // cells over which the ground is continued; a bit per neighbour, see Nearer::mask
 constexpr int kBearings = 64;  // sectors of equal azimuth, a bit each
 constexpr int kNearCells = 6;  // around the sensor, where sectors are narrower than cells
 constexpr std::uint64_t kAllSectors = ~std::uint64_t{0};
@@ -24,15 +25,15 @@ DONEX_WIDE_LOOPS void findCells(const Eigen::Vector3f& sensor, float cell, int w
   const float sensor_x = sensor.x(), sensor_y = sensor.y();
   const auto* xyz = reinterpret_cast<const float*>(echoes);
   const int middle = width / 2;
+  const auto low = static_cast<float>(-middle), high = static_cast<float>(middle + 1);
   for (std::size_t i = 0; i < count; ++i) {
-    const float across = std::floor((xyz[3 * i] - sensor_x) / cell + 0.5F);
-    const float along = std::floor((xyz[3 * i + 1] - sensor_y) / cell + 0.5F);
-    const auto half = static_cast<float>(middle);
-    const bool inside =
-        static_cast<int>(std::abs(across) <= half) & static_cast<int>(std::abs(along) <= half);  // not NaN
-    const int x = static_cast<int>(inside ? across : 0.0F) + middle,
-              y = static_cast<int>(inside ? along : 0.0F) + middle;
-    cells[i] = inside ? y * width + x : -1;
+    const float across = (xyz[3 * i] - sensor_x) / cell + 0.5F, along = (xyz[3 * i + 1] - sensor_y) / cell + 0.5F;
+    const int inside = static_cast<int>(across >= low) & static_cast<int>(across < high) &
+                       static_cast<int>(along >= low) & static_cast<int>(along < high);
+    // NaN, as the second argument, becomes the first one.
+    const int x = floorToInt(std::min(high, std::max(low, across))) + middle;
+    const int y = floorToInt(std::min(high, std::max(low, along))) + middle;
+    cells[i] = (y * width + x) | (inside - 1);
   }
 }
 
@@ -57,7 +58,8 @@ Ground::Ground(double reach, const GroundOptions& options) : options_(options), 
   }
   for (int y = -(width_ / 2); y <= width_ / 2; ++y) {
     for (int x = -(width_ / 2); x <= width_ / 2; ++x) {
-      outwards_.push_back({static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), neighboursNearerTo(x, y)});
+      outwards_.push_back(
+          {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), findNearer(neighboursNearerTo(x, y))});
       sectors_.push_back(sectorsOf(x, y));
     }
   }
@@ -76,6 +78,29 @@ std::uint32_t Ground::neighboursNearerTo(int x, int y) const {
   return nearer;
 }
 
+Ground::Nearer Ground::nearerOf(std::uint32_t mask) const {
+  Nearer nearer{mask, {}, {}, {}, {}};
+  nearer.away.fill(kNone);
+  std::size_t count = 0;
+  for (std::uint32_t left = mask; left != 0; left &= left - 1) nearer.number[count++] = __builtin_ctz(left);
+  std::fill(nearer.number.begin() + static_cast<std::ptrdiff_t>(count), nearer.number.end(), nearer.number.front());
+  for (std::size_t k = 0; k < kMostNearer; ++k) {
+    const Neighbour& by = around_[static_cast<std::size_t>(nearer.number[k])];
+    nearer.offset[k] = mask == 0 ? 0 : by.offset;
+    if (k < count) nearer.away[k] = by.away;
+  }
+  return nearer;
+}
+
+/// Its place in nearer_; few differ.
+std::uint32_t Ground::findNearer(std::uint32_t mask) {
+  const auto known =
+      std::find_if(nearer_.begin(), nearer_.end(), [&](const Nearer& nearer) { return nearer.mask == mask; });
+  const auto place = static_cast<std::uint32_t>(known - nearer_.begin());
+  if (known == nearer_.end()) nearer_.push_back(nearerOf(mask));
+  return place;
+}
+
 Eigen::Vector2f Ground::offsetOf(const Cell& cell) const { return options_.cell * Eigen::Vector2f(cell.x, cell.y); }
 
 void Ground::estimate(TurnPart part, const Eigen::Vector3d& origin, const Eigen::Vector3f& sensor,
@@ -87,10 +112,7 @@ void Ground::estimate(TurnPart part, const Eigen::Vector3d& origin, const Eigen:
   }
   collect(echoes, is_echo);
   if (!findStart()) return;
-  // The slope around the sensor goes on.
-  for (Neighbour& by : around_) {
-    by.climb = options_.cell * (start_.x() * static_cast<float>(by.x) + start_.y() * static_cast<float>(by.y));
-  }
+  climbAround();
   continueOutwards(is_known_ ? sectorsHit() : kAllSectors);
   is_known_ = true;
 }
@@ -213,17 +235,33 @@ Eigen::Vector3f Ground::fitStart(float reach) const {
   return normal.ldlt().solve(right).cast<float>();
 }
 
+/// The slope around the sensor goes on.
+void Ground::climbAround() {
+  for (Neighbour& by : around_) {
+    by.climb = options_.cell * (start_.x() * static_cast<float>(by.x) + start_.y() * static_cast<float>(by.y));
+  }
+  for (Nearer& nearer : nearer_) {
+    for (std::size_t k = 0; k < kMostNearer; ++k) {
+      nearer.climb[k] = around_[static_cast<std::size_t>(nearer.number[k])].climb;
+    }
+  }
+}
+
 Ground::Continuation Ground::continueTo(const Cell& cell) const {
   const std::size_t here = indexOf(cell.x, cell.y);
+  const Nearer& nearer = nearer_[cell.nearer];
+  std::array<float, kMostNearer> since_seen, height, weight;
+  for (std::size_t k = 0; k < kMostNearer; ++k) {
+    const std::size_t neighbour = here + static_cast<std::size_t>(nearer.offset[k]);
+    since_seen[k] = unseen_[neighbour] + nearer.away[k];
+    height[k] = ground_[neighbour] - nearer.climb[k];
+  }
+  for (std::size_t k = 0; k < kMostNearer; ++k) weight[k] = 1.0F / (since_seen[k] * since_seen[k]);
   float sum = 0.0F, weights = 0.0F, unseen = kNone;
-  for (std::uint32_t nearer = cell.nearer; nearer != 0; nearer &= nearer - 1) {
-    const Neighbour& by = around_[static_cast<std::size_t>(__builtin_ctz(nearer))];
-    const std::size_t neighbour = here + static_cast<std::size_t>(by.offset);
-    const float since_seen = unseen_[neighbour] + by.away;
-    const float weight = 1.0F / (since_seen * since_seen);
-    sum += weight * (ground_[neighbour] - by.climb);
-    weights += weight;
-    unseen = std::min(unseen, since_seen);
+  for (std::size_t k = 0; k < kMostNearer; ++k) {
+    sum += weight[k] * height[k];
+    weights += weight[k];
+    unseen = std::min(unseen, since_seen[k]);
   }
   if (weights > 0.0F) return {sum / weights, unseen};
   return {startAt(offsetOf(cell)), options_.start_uncertainty};
@@ -235,6 +273,11 @@ float Ground::heightOf(const Eigen::Vector3f& point) const {
   return heightIn(cell, point.z());
 }
 
+void Ground::heightsOf(const std::vector<Eigen::Vector3f>& echoes, std::size_t first, std::size_t last,
+                       std::vector<float>& heights) const {
+  for (std::size_t i = first; i < last; ++i) heights[i] = heightIn(cell_of_[i], echoes[i].z());
+}
+
 double Ground::bytesFor(double reach, double echoes, const GroundOptions& options) {
   const double cells = std::pow(widthOf(reach, options.cell), 2);
   return cells * (sizeof(Cell) + sizeof(Sectors) + 5 * sizeof(float)) + roomFor(echoes * sizeof(int));
@@ -242,7 +285,8 @@ double Ground::bytesFor(double reach, double echoes, const GroundOptions& option
 
 std::size_t Ground::memoryBytes() const {
   return outwards_.capacity() * sizeof(Cell) + sectors_.capacity() * sizeof(Sectors) +
-         around_.capacity() * sizeof(Neighbour) + cell_of_.capacity() * sizeof(int) +
+         around_.capacity() * sizeof(Neighbour) + nearer_.capacity() * sizeof(Nearer) +
+         cell_of_.capacity() * sizeof(int) +
          (lowest_.capacity() + before_.capacity() + ground_.capacity() + unseen_.capacity() + moved_.capacity()) *
              sizeof(float) +
          near_.capacity() * sizeof(Eigen::Vector3f);

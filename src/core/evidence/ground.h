@@ -1,6 +1,7 @@
 // The local ground: which echoes lie on it (algorithm: "Ground").
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -50,6 +51,9 @@ class Ground {
 
   /// The same of an echo of the last estimate, by its number there and its height `z` in the frame [m].
   float heightOfEcho(std::size_t echo, float z) const { return heightIn(cell_of_[echo], z); }
+  /// The same of `echoes`, those from `first` to `last` (not included).
+  void heightsOf(const std::vector<Eigen::Vector3f>& echoes, std::size_t first, std::size_t last,
+                 std::vector<float>& heights) const;
 
   std::size_t memoryBytes() const;
   /// What memoryBytes will be, for scans of so many echoes [bytes].
@@ -62,14 +66,25 @@ class Ground {
   using Sectors = std::uint64_t;
   struct Cell {
     std::int16_t x, y;     ///< from the sensor's
-    std::uint32_t nearer;  ///< which neighbours are nearer to the sensor, and in the map: a bit each
+    std::uint32_t nearer;  ///< which of nearer_
     int squaredDistance() const { return x * x + y * y; }
   };
   struct Neighbour {
     int x, y;
-    std::ptrdiff_t offset;  ///< of its index
-    float away;             ///< [m]
-    float climb;            ///< how far the plane around the sensor rises to it [m]
+    int offset;   ///< of its index
+    float away;   ///< [m]
+    float climb;  ///< how far the plane around the sensor rises to it [m]
+  };
+
+  /// Of two neighbours on opposite sides one at most is nearer.
+  static constexpr std::size_t kMostNearer = 12;
+  /// The neighbours that are nearer to the sensor, and in the map, by their number in around_. Behind them comes the
+  /// first one again, infinitely far away, where it has no weight: all cells ask as many, so that no loop's end is to
+  /// be guessed.
+  struct Nearer {
+    std::uint32_t mask;  ///< a bit per neighbour
+    std::array<int, kMostNearer> number, offset;
+    std::array<float, kMostNearer> away, climb;
   };
 
   static int widthOf(double reach, float cell);
@@ -86,17 +101,19 @@ class Ground {
            static_cast<std::size_t>(x + middle);
   }
   float heightIn(int cell, float z) const {
-    if (cell < 0) return kNone;
-    const float ground = ground_[static_cast<std::size_t>(cell)];
-    return ground == kNone ? kNone : z + shift_.z() - ground;
+    const float ground = ground_[static_cast<std::size_t>(std::max(cell, 0))];  // read in any case: nothing to guess
+    return z + shift_.z() - (cell < 0 || ground == kNone ? -kNone : ground);    // infinitely far below where unknown
   }
   Eigen::Vector2f offsetOf(const Cell& cell) const;  ///< from the sensor's cell [m]
   /// In this turn, or in the one before where this one has none yet.
   float lowestIn(std::size_t cell) const { return std::isinf(lowest_[cell]) ? before_[cell] : lowest_[cell]; }
   bool findStart();  ///< false where no echo is near
   Eigen::Vector3f fitStart(float reach) const;
-  /// As Cell::nearer.
+  /// As Nearer::mask.
   std::uint32_t neighboursNearerTo(int x, int y) const;
+  Nearer nearerOf(std::uint32_t mask) const;
+  std::uint32_t findNearer(std::uint32_t mask);
+  void climbAround();
   /// Height of the plane around the sensor, `offset` [m] from there.
   float startAt(const Eigen::Vector2f& offset) const { return start_.head<2>().dot(offset) + start_.z(); }
   /// What the ground of nearer cells lets expect.
@@ -114,6 +131,7 @@ class Ground {
   bool is_known_ = false;                             ///< all cells have a ground, if only continued
   std::vector<Cell> outwards_;                        ///< by distance from the sensor
   std::vector<Neighbour> around_;
+  std::vector<Nearer> nearer_;                       ///< each once
   std::vector<int> cell_of_;                         ///< by echo, -1 outside
   std::vector<float> lowest_, ground_;               ///< by cell [m]
   std::vector<float> before_;                        ///< by cell: the lowest echo in the turn before [m]

@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/evidence/ground.h"
 #include "core/evidence/loose_echoes.h"
 #include "core/evidence/newness.h"
 #include "core/evidence/own_body.h"
+#include "core/grid/simd.h"
 #include "core/grid/storage.h"
 #include "core/grid/workers.h"
 #include "core/methods/detectors.h"
@@ -39,6 +41,19 @@ struct GroundCount {
 SightHistory historyOf(const EvidenceConfig& e, const EvidenceDetectorOptions& options) {
   return SightHistory(e.history_length, options.history_spacing, static_cast<float>(e.sight_margin),
                       {e.careful_sight, std::tan(e.sight_gap * kRadiansPerDegree)});
+}
+
+/// By height above ground [m], to the echoes that are inside and solid.
+DONEX_WIDE_LOOPS void giveRoles(const float* heights, const std::uint8_t* inside, const std::uint8_t* is_solid,
+                                std::size_t count, float connects_above, float follows_above, ClusterRole* roles) {
+  static_assert(static_cast<int>(ClusterRole::kNone) == 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const int takes_part = inside[i] & is_solid[i];
+    const int connects = takes_part & static_cast<int>(heights[i] > connects_above);
+    const int follows = takes_part & (1 - connects) & static_cast<int>(heights[i] > follows_above);
+    roles[i] = static_cast<ClusterRole>(connects * static_cast<int>(ClusterRole::kConnects) +
+                                        follows * static_cast<int>(ClusterRole::kFollows));
+  }
 }
 
 /// What both grids share; `PlaceJudge` is what differs between them.
@@ -184,26 +199,28 @@ class EvidenceDetector : public Detector {
     resizeTo(judged_.heights, judged_.points.size());
     resizeTo(judged_.roles, judged_.points.size());
     forEachStretch(workers_, judged_.points.size(), [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) {
-        judged_.heights[i] = heightOf(i);
-        judged_.roles[i] = roleOf(i, judged_.heights[i]);
-      }
+      setHeights(first, last);
+      setRoles(first, last);
     });
   }
 
-  float heightOf(std::size_t i) const {
-    const float z = judged_.points[i].z();
-    // Without the step there is no ground to stand above: heights are the window's.
-    if (!judged_.has_ground) return z;
-    const float height = ground_.heightOfEcho(i, z);
-    return lacks_ground_ ? height + clearance() : height;  // nothing is on the ground
+  void setHeights(std::size_t first, std::size_t last) {
+    if (judged_.has_ground) {
+      ground_.heightsOf(judged_.points, first, last, judged_.heights);
+      if (!lacks_ground_) return;
+      for (std::size_t i = first; i < last; ++i) judged_.heights[i] += clearance();  // nothing is on the ground
+    } else {
+      // Without the step there is no ground to stand above: heights are the window's.
+      for (std::size_t i = first; i < last; ++i) judged_.heights[i] = judged_.points[i].z();
+    }
   }
 
-  ClusterRole roleOf(std::size_t i, float height) const {
-    if (in_voxels_.inside[i] == 0 || judged_.is_solid[i] == 0) return ClusterRole::kNone;
-    const bool is_above = !judged_.has_ground || lacks_ground_ || height > clearance();
-    if (is_above) return ClusterRole::kConnects;
-    return height > options_.lowest_of_objects ? ClusterRole::kFollows : ClusterRole::kNone;
+  void setRoles(std::size_t first, std::size_t last) {
+    constexpr float kAnyHeight = -std::numeric_limits<float>::infinity();
+    const bool knows_ground = judged_.has_ground && !lacks_ground_;
+    const float connects_above = knows_ground ? clearance() : kAnyHeight;
+    giveRoles(judged_.heights.data() + first, in_voxels_.inside.data() + first, judged_.is_solid.data() + first,
+              last - first, connects_above, options_.lowest_of_objects, judged_.roles.data() + first);
   }
 
   /// What needs the roles but not the places.
