@@ -31,8 +31,8 @@ enum class ClusterRole : std::uint8_t {
 /// One entry per echo; while objects are looked for, points, heights, roles and places have entries of earlier parts of
 /// the turn, too, behind those of the cloud itself. Points are the echoes in the grid's window, z up [m].
 struct JudgedScan {
-  double stamp = 0.0;  ///< [s]
-  Eigen::Isometry3d odom_from_points = Eigen::Isometry3d::Identity();
+  double stamp = 0.0;                                                  ///< [s]
+  Eigen::Isometry3d odom_from_points = Eigen::Isometry3d::Identity();  ///< without a rotation
   Eigen::Vector3f sensor = Eigen::Vector3f::Zero();
   std::vector<Eigen::Vector3f> points;  ///< NaN where the echo is none
   std::vector<std::uint8_t> is_echo;

@@ -94,7 +94,9 @@ void ObjectTracker::match(double stamp, const Segments& segments) {
     const Eigen::Vector3d predicted = track.centerAt(stamp);
     const double step = stepOf(track);
     for (std::size_t c = 0; c < segments.size(); ++c) {
-      const double distance = (segments[c].center() - predicted).norm();
+      const Eigen::Vector3d offset = segments[c].center() - predicted;
+      if (std::abs(offset.x()) > step || std::abs(offset.y()) > step) continue;  // most are, and need no root
+      const double distance = offset.norm();
       const bool is_alike = distance <= step && rules_.areAlike(track.extent, segments[c].extent());
       if (is_alike) pairs_.push_back({distance, t, c});
     }

@@ -4,8 +4,7 @@
 
 namespace donex {
 void describeEchoes(const JudgedScan& scan, Segment& segment) {
-  segment.low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
-  segment.high = -segment.low;
+  Eigen::Array3f low = Eigen::Array3f::Constant(std::numeric_limits<float>::infinity()), high = -low;
   segment.new_echoes = segment.surely_new_echoes = segment.surface_echoes = segment.settled_echoes = 0;
   segment.lowest = segment.lowest_new = std::numeric_limits<float>::infinity();
   segment.highest_new = -segment.lowest_new;
@@ -21,10 +20,12 @@ void describeEchoes(const JudgedScan& scan, Segment& segment) {
     segment.surely_new_echoes += place == Place::kSurelyNew ? 1 : 0;
     segment.surface_echoes += place == Place::kAtSurface ? 1 : 0;
     segment.settled_echoes += place == Place::kSettled ? 1 : 0;
-    const Eigen::Vector3d in_odom = scan.odom_from_points * scan.points[echo].cast<double>();
-    segment.low = segment.low.cwiseMin(in_odom);
-    segment.high = segment.high.cwiseMax(in_odom);
+    low = low.min(scan.points[echo].array());
+    high = high.max(scan.points[echo].array());
   }
+  // Points are only moved, not turned, and rounding keeps their order: the outermost stay so, to the last bit.
+  segment.low = scan.odom_from_points * low.matrix().cast<double>();
+  segment.high = scan.odom_from_points * high.matrix().cast<double>();
 }
 
 }  // namespace donex
