@@ -189,7 +189,8 @@ Ground::Sectors Ground::sectorsOf(int x, int y) {
 void Ground::continueOutwards(Sectors sectors) {
   for (const Cell& cell : outwards_) {
     const std::size_t i = indexOf(cell.x, cell.y);
-    if ((sectors_[i] & sectors) == 0) continue;
+    const bool is_asked = sectors == kAllSectors || (sectors_[i] & sectors) != 0;  // of all, none needs to be read
+    if (!is_asked) continue;
     const Continuation expected = continueTo(cell);
     const float down = std::min(options_.roughness + options_.fall * expected.unseen, options_.largest_step);
     const float rise = std::min(options_.kerb + options_.rise * expected.unseen, options_.largest_step);

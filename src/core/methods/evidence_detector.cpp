@@ -22,7 +22,7 @@ namespace donex {
 namespace {
 
 static_assert(kStretch % EchoBlock::kSize == 0);
-constexpr std::size_t kPrefetchAhead = 12;  // echoes; long enough for memory to answer
+constexpr std::size_t kPrefetchAhead = 32;  // echoes; long enough for memory to answer
 
 struct EvidenceDetectorOptions {
   float lowest_of_objects = 0.07F;  ///< from here up to the ground clearance echoes may belong to an object [m]

@@ -61,6 +61,15 @@ void Clusters::connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::V
   for (const Column& column : columns_) column_at_[columnOf(column.x, column.y)] = kNone;
 }
 
+/// Where the column of a place is, or kNone where it takes no part.
+inline int Clusters::columnAt(const Eigen::Vector3f& from_sensor, float height) const {
+  const bool in_height = height >= 0.0F && height <= static_cast<float>(options_.height);
+  const int x = floorToInt(from_sensor.x() * per_cell_) + width_ / 2;
+  const int y = floorToInt(from_sensor.y() * per_cell_) + width_ / 2;
+  const bool in_square = x >= 0 && x < width_ && y >= 0 && y < width_;
+  return in_height && in_square ? y * width_ + x : int{kNone};
+}
+
 /// Cells are numbered in the order of their first echoes.
 void Clusters::fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
                     const std::vector<float>& heights, const std::vector<ClusterRole>& roles) {
@@ -68,24 +77,24 @@ void Clusters::fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vect
   columns_.clear();
   cell_in_column_.clear();
   members_.clear();
-  const auto highest = static_cast<float>(options_.height);
-  std::array<std::uint32_t, kBlock> taking_part;
   for (std::size_t first = 0; first < echoes.size(); first += kBlock) {
+    std::array<Member, kBlock> taking_part;
     std::size_t count = 0;
     for (std::size_t i = first; i < std::min(first + kBlock, echoes.size()); ++i) {
       const bool takes_part = roles[i] == ClusterRole::kConnects || roles[i] == ClusterRole::kFollows;
-      taking_part[count] = static_cast<std::uint32_t>(i);
+      taking_part[count].echo = static_cast<std::uint32_t>(i);
       count += takes_part ? 1U : 0U;  // written in any case: no branch to guess
     }
     for (std::size_t k = 0; k < count; ++k) {
-      const std::uint32_t i = taking_part[k];
-      const int x = floorToInt((echoes[i].x() - sensor.x()) * per_cell_) + width_ / 2;
-      const int y = floorToInt((echoes[i].y() - sensor.y()) * per_cell_) + width_ / 2;
-      const bool is_in = heights[i] >= 0.0F && heights[i] <= highest && x >= 0 && x < width_ && y >= 0 && y < width_;
-      if (!is_in) continue;
-      const int x_y = y * width_ + x;
-      const bool follows = roles[i] == ClusterRole::kFollows;
-      members_.push_back({i, follows ? ~x_y : makeCell(x_y, static_cast<int>(heights[i] * per_cell_))});
+      const std::uint32_t echo = taking_part[k].echo;
+      taking_part[k].cluster = columnAt(echoes[echo] - sensor, heights[echo]);
+      __builtin_prefetch(&column_at_[static_cast<std::size_t>(std::max(taking_part[k].cluster, 0))]);
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto& [echo, column] = taking_part[k];
+      if (column == kNone) continue;
+      const bool follows = roles[echo] == ClusterRole::kFollows;
+      members_.push_back({echo, follows ? ~column : makeCell(column, static_cast<int>(heights[echo] * per_cell_))});
     }
   }
 }

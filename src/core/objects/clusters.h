@@ -64,6 +64,7 @@ class Clusters {
     return cell_in_column_.data() + static_cast<std::ptrdiff_t>(column) * layers_;
   }
   static int widthOf(double reach, double cell);
+  int columnAt(const Eigen::Vector3f& from_sensor, float height) const;
   int makeCell(int x_y, int z);
   int cellAbove(int x_y) const;
   /// Others may join cells at the same time: what is read is old at worst, and a parent's parent serves as well.

@@ -11,6 +11,12 @@ constexpr auto kPixels = static_cast<std::size_t>(kColumns) * static_cast<std::s
 constexpr int kMoreRows = 8;   // when parts of a turn reach beyond those before, they may do so again
 constexpr int kAsCovered = 2;  // columns beside one that is covered: a sensor may step wider than ours
 
+/// Unknown pixels say nothing: as unsigned, 0 - 1 is the largest range, so min passes them by.
+inline std::uint16_t nearer(std::uint16_t a, std::uint16_t b) {
+  const auto least = std::min<std::uint16_t>(static_cast<std::uint16_t>(a - 1), static_cast<std::uint16_t>(b - 1));
+  return static_cast<std::uint16_t>(least + 1);
+}
+
 /// Those within `reach` of one that is set.
 std::array<std::uint8_t, kColumns> around(const std::array<std::uint8_t, kColumns>& columns, int reach) {
   std::array<std::uint8_t, kColumns> result = columns;
@@ -91,7 +97,7 @@ SightImage::Columns SightImage::collect(const SightPixels& seen) {
     if (seen.row(i) < 0) continue;
     const auto range = static_cast<Range>(seen.range(i));
     Range& nearest = hit_[static_cast<std::size_t>(startOf(seen.column(i)) + seen.row(i) - first_row_)];
-    if (nearest == 0 || range < nearest) nearest = range;
+    nearest = nearer(nearest, range);
     changed[static_cast<std::size_t>(seen.column(i))] = 1;
   }
   return changed;
@@ -140,16 +146,6 @@ void SightImage::fillBetweenColumns(int column, const std::vector<Range>& beams,
     filled[row] = is_between ? std::min(left[row], right[row]) : middle[row];
   }
 }
-
-namespace {
-
-/// Unknown pixels around say nothing: as unsigned, 0 - 1 is the largest range, so min passes them by.
-inline std::uint16_t nearer(std::uint16_t a, std::uint16_t b) {
-  const auto least = std::min<std::uint16_t>(static_cast<std::uint16_t>(a - 1), static_cast<std::uint16_t>(b - 1));
-  return static_cast<std::uint16_t>(least + 1);
-}
-
-}  // namespace
 
 void SightImage::erodeUpright(int column, const std::vector<Range>& between, std::vector<Range>& upright) const {
   const Range* ranges = between.data() + startOf(column);

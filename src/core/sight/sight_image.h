@@ -59,6 +59,7 @@ class SightImage {
     return true;
   }
 
+  /// What is known lies in the order of the ranges seen, from beyond the point to before it.
   enum class Sight { kUnknown, kFree, kSurface, kHidden };
 
   /// What the scan says of a point of its sensor frame [m]: free where it saw at least `margin` [m]
@@ -108,8 +109,10 @@ inline SightImage::Sight SightImage::read(const std::vector<Range>& image, const
   if (!is_covered) return Sight::kUnknown;
   const Range nearest = image[static_cast<std::size_t>(startOf(pixel.column) + row)];
   const float beyond = static_cast<float>(nearest) * SightPixels::kRangeStep - pixel.range;
-  const Sight sight = beyond > margin ? Sight::kFree : beyond > -margin ? Sight::kSurface : Sight::kHidden;
-  return nearest == 0 ? Sight::kUnknown : sight;
+  // No branch to guess, so that answers of several images are waited for together.
+  const int before =
+      static_cast<int>(Sight::kHidden) - static_cast<int>(beyond > -margin) - static_cast<int>(beyond > margin);
+  return static_cast<Sight>(static_cast<int>(nearest != 0) * before);
 }
 
 }  // namespace donex
