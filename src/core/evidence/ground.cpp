@@ -164,7 +164,8 @@ void Ground::collect(const std::vector<Eigen::Vector3f>& echoes, const std::vect
   for (std::size_t i = 0; i < echoes.size(); ++i) {
     if (is_echo[i] == 0 || cell_of_[i] < 0) continue;
     float& lowest = lowest_[static_cast<std::size_t>(cell_of_[i])];
-    lowest = std::min(lowest, echoes[i].z() + shift_.z());
+    const float height = echoes[i].z() + shift_.z();
+    if (height < lowest) lowest = height;  // seldom: what is not written need not be waited for
   }
 }
 

@@ -6,6 +6,7 @@
 #include "core/evidence/loose_echoes.h"
 #include "core/evidence/newness.h"
 #include "core/evidence/own_body.h"
+#include "core/grid/selection.h"
 #include "core/grid/simd.h"
 #include "core/grid/storage.h"
 #include "core/grid/workers.h"
@@ -231,14 +232,14 @@ class EvidenceDetector : public Detector {
 
   /// Free evidence, careful sight, birth age, neighbourhood: asked of the scans before this one.
   void judgePlaces(const SightView& before) {
-    const std::size_t own = judged_.own();
-    for (std::size_t i = 0; i < own; ++i) {
-      const std::size_t later = i + kPrefetchAhead;
-      const bool will_be_asked = later < own && judged_.roles[later] == ClusterRole::kConnects;
-      if (will_be_asked) places_.expect(in_voxels_.echoes[later]);
-      if (judged_.roles[i] != ClusterRole::kConnects) continue;
-      judged_.places[i] = places_.judge(in_voxels_.echoes[i], judged_.points[i], clock_, before);
-    }
+    const auto connects = [&](std::size_t i) { return judged_.roles[i] == ClusterRole::kConnects; };
+    forEachSelection(0, judged_.own(), connects, [&](const std::uint32_t* asked, std::size_t count) {
+      for (std::size_t k = 0; k < count; ++k) {
+        if (k + kPrefetchAhead < count) places_.expect(in_voxels_.echoes[asked[k + kPrefetchAhead]]);
+        const std::uint32_t i = asked[k];
+        judged_.places[i] = places_.judge(in_voxels_.echoes[i], judged_.points[i], clock_, before);
+      }
+    });
   }
 
   /// Without objects every echo is judged by its place alone.

@@ -6,14 +6,9 @@
 #include <utility>
 
 #include "core/grid/line_of_sight.h"
+#include "core/grid/selection.h"
 
 namespace donex {
-namespace {
-
-constexpr std::size_t kBlock = 256;  // echoes of which those that take part are found together
-
-}  // namespace
-
 Clusters::Clusters(double reach, const Options& options)
     : options_(options),
       per_cell_(static_cast<float>(1.0 / options.cell)),
@@ -77,26 +72,24 @@ void Clusters::fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vect
   columns_.clear();
   cell_in_column_.clear();
   members_.clear();
-  for (std::size_t first = 0; first < echoes.size(); first += kBlock) {
-    std::array<Member, kBlock> taking_part;
-    std::size_t count = 0;
-    for (std::size_t i = first; i < std::min(first + kBlock, echoes.size()); ++i) {
-      const bool takes_part = roles[i] == ClusterRole::kConnects || roles[i] == ClusterRole::kFollows;
-      taking_part[count].echo = static_cast<std::uint32_t>(i);
-      count += takes_part ? 1U : 0U;  // written in any case: no branch to guess
+  const auto takes_part = [&](std::size_t i) {
+    return roles[i] == ClusterRole::kConnects || roles[i] == ClusterRole::kFollows;
+  };
+  forEachSelection(0, echoes.size(), takes_part, [&](const std::uint32_t* chosen, std::size_t count) {
+    std::array<int, kSelectionBlock> columns;
+    for (std::size_t k = 0; k < count; ++k) {
+      columns[k] = columnAt(echoes[chosen[k]] - sensor, heights[chosen[k]]);
+      __builtin_prefetch(&column_at_[static_cast<std::size_t>(std::max(columns[k], 0))]);
     }
     for (std::size_t k = 0; k < count; ++k) {
-      const std::uint32_t echo = taking_part[k].echo;
-      taking_part[k].cluster = columnAt(echoes[echo] - sensor, heights[echo]);
-      __builtin_prefetch(&column_at_[static_cast<std::size_t>(std::max(taking_part[k].cluster, 0))]);
-    }
-    for (std::size_t k = 0; k < count; ++k) {
-      const auto& [echo, column] = taking_part[k];
-      if (column == kNone) continue;
+      if (columns[k] == kNone) continue;
+      const std::uint32_t echo = chosen[k];
       const bool follows = roles[echo] == ClusterRole::kFollows;
-      members_.push_back({echo, follows ? ~column : makeCell(column, static_cast<int>(heights[echo] * per_cell_))});
+      Member& member = members_.emplace_back();  // filled in its place: a copy would wait for both of its halves
+      member.echo = echo;
+      member.cluster = follows ? ~columns[k] : makeCell(columns[k], static_cast<int>(heights[echo] * per_cell_));
     }
-  }
+  });
 }
 
 int Clusters::rootOf(int cell) {
