@@ -1,10 +1,15 @@
 #include "core/evidence/own_body.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "core/grid/simd.h"
 
 namespace donex {
 namespace {
+
+constexpr std::size_t kNearBlock = 256;  // echoes that are looked at together
 
 Eigen::Array3f halfOf(const OwnBody::Options& options) {
   return Eigen::Array3d(options.reach, options.half_width, options.half_height).cast<float>();
@@ -12,6 +17,29 @@ Eigen::Array3f halfOf(const OwnBody::Options& options) {
 
 Eigen::Vector3i sizeOf(const OwnBody::Options& options) {
   return (2.0F * halfOf(options) / static_cast<float>(options.cell)).ceil().cast<int>();
+}
+
+/// 1 where an echo lies nearer to its sensor than `farthest` [m]. The order of the sums is Eigen's.
+DONEX_WIDE_LOOPS void findNear(const Eigen::Vector3f* echoes, std::size_t count, float farthest,
+                               std::uint8_t* is_near) {
+  const auto* xyz = reinterpret_cast<const float*>(echoes);
+  for (std::size_t i = 0; i < count; ++i) {
+    const float x = xyz[3 * i], y = xyz[3 * i + 1], z = xyz[3 * i + 2];
+    is_near[i] = static_cast<std::uint8_t>(x * x + (y * y + z * z) < farthest * farthest);
+  }
+}
+
+/// Calls visit(number) for the echoes from `first` to `last` (not included) that lie so near. Few do.
+template <class Visit>
+void forEachNear(const Scan& scan, std::size_t first, std::size_t last, float farthest, Visit&& visit) {
+  std::array<std::uint8_t, kNearBlock> is_near;
+  for (std::size_t begin = first; begin < last; begin += kNearBlock) {
+    const std::size_t count = std::min(kNearBlock, last - begin);
+    findNear(scan.echoes.data() + begin, count, farthest, is_near.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      if (is_near[i] != 0) visit(begin + i);
+    }
+  }
 }
 
 }  // namespace
@@ -47,14 +75,16 @@ void OwnBody::leaveOut(const Scan& scan, std::size_t first, std::size_t last,
                        std::vector<std::uint8_t>& is_solid) const {
   if (!is_found_ && !hasBox()) return;
   const Eigen::Isometry3f base_from_sensor = scan.base_from_sensor.cast<float>();
-  const float farthest = detects() ? farthestFrom(base_from_sensor.translation()) : 0.0F;
-  for (std::size_t i = first; i < last; ++i) {
-    const bool may_be_in_a_cell = scan.echoes[i].squaredNorm() < farthest * farthest;
-    if (!may_be_in_a_cell && !hasBox()) continue;
+  const auto leave_out = [&](std::size_t i) {
     const Eigen::Vector3f place = base_from_sensor * scan.echoes[i];
-    const int cell = may_be_in_a_cell ? cellOf(place) : kNone;
+    const int cell = detects() ? cellOf(place) : kNone;
     const bool stays = cell != kNone && counts_[static_cast<std::size_t>(cell)] >= options_.body;
     if (stays || isInBox(place)) is_solid[i] = 0;
+  };
+  if (hasBox()) {
+    for (std::size_t i = first; i < last; ++i) leave_out(i);
+  } else {
+    forEachNear(scan, first, last, farthestFrom(base_from_sensor.translation()), leave_out);
   }
 }
 
@@ -65,11 +95,11 @@ void OwnBody::learn(TurnPart part, const Scan& scan, const std::vector<std::uint
   if (!is_counting_) return;
   const Eigen::Isometry3f base_from_sensor = scan.base_from_sensor.cast<float>();
   const float farthest = farthestFrom(base_from_sensor.translation());
-  for (std::size_t i = 0; i < scan.echoes.size(); ++i) {
-    const bool may_count = is_echo[i] != 0 && scan.echoes[i].squaredNorm() < farthest * farthest && heights[i] > lowest;
+  forEachNear(scan, 0, scan.echoes.size(), farthest, [&](std::size_t i) {
+    const bool may_count = is_echo[i] != 0 && heights[i] > lowest;
     const int cell = may_count ? cellOf(base_from_sensor * scan.echoes[i]) : kNone;
     if (cell != kNone) hit_[static_cast<std::size_t>(cell)] = 1;
-  }
+  });
 }
 
 void OwnBody::beginTurn(const Scan& scan) {
