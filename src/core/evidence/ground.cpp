@@ -30,9 +30,8 @@ DONEX_WIDE_LOOPS void findCells(const Eigen::Vector3f& sensor, float cell, int w
     const float across = (xyz[3 * i] - sensor_x) / cell + 0.5F, along = (xyz[3 * i + 1] - sensor_y) / cell + 0.5F;
     const int inside = static_cast<int>(across >= low) & static_cast<int>(across < high) &
                        static_cast<int>(along >= low) & static_cast<int>(along < high);
-    // NaN, as the second argument, becomes the first one.
-    const int x = floorToInt(std::min(high, std::max(low, across))) + middle;
-    const int y = floorToInt(std::min(high, std::max(low, along))) + middle;
+    const int x = floorToInt(clampedTo(low, high, across)) + middle;
+    const int y = floorToInt(clampedTo(low, high, along)) + middle;
     cells[i] = (y * width + x) | (inside - 1);
   }
 }

@@ -9,3 +9,13 @@
 #else
 #define DONEX_WIDE_LOOPS
 #endif
+
+namespace donex {
+
+/// `x`, or the bound that it lies beyond; `low` for NaN, which a library's minimum and maximum may make anything of.
+inline float clampedTo(float low, float high, float x) {
+  const float from_low = x > low ? x : low;
+  return from_low < high ? from_low : high;
+}
+
+}  // namespace donex

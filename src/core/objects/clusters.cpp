@@ -45,13 +45,13 @@ int Clusters::cellAbove(int x_y) const {
 void Clusters::connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
                        const std::vector<float>& heights, const std::vector<ClusterRole>& roles,
                        const Workers& workers) {
-  constexpr std::size_t kColumns = 256;  // far ones have more neighbours to look at
+  constexpr std::size_t kJoinedTogether = 256;  // columns; far ones have more neighbours to look at
   fill(sensor, echoes, heights, roles);
   const auto join_some = [&](std::size_t first, std::size_t last) {
     for (std::size_t column = first; column < last; ++column) join(static_cast<int>(column));
   };
   is_shared_ = workers.threads() > 1;
-  forEachStretch(workers, columns_.size(), join_some, kColumns);
+  forEachStretch(workers, columns_.size(), join_some, kJoinedTogether);
   number(echoes.size());
   for (const Column& column : columns_) column_at_[columnOf(column.x, column.y)] = kNone;
 }

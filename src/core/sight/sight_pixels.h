@@ -9,6 +9,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/grid/simd.h"
 #include "core/grid/storage.h"
 #include "core/grid/workers.h"
 #include "core/pi.h"
@@ -95,9 +96,8 @@ inline SightPixels::Pixel SightPixels::of(float x, float y, float z) {
                      static_cast<int>(std::abs(slope) < kSteepest);
   const float turn = (azimuthOf(y, x) + kPiF) * (kColumns / (2.0F * kPiF));
   const float rise = (slope + kSteepest) / kRowHeight;
-  // NaN, as the second argument, becomes the first one.
-  const int column = static_cast<int>(std::min<float>(kColumns, std::max(0.0F, turn))) & (kColumns - 1);
-  const int row = static_cast<int>(std::min<float>(kRows, std::max(0.0F, rise)));
+  const int column = static_cast<int>(clampedTo(0.0F, kColumns, turn)) & (kColumns - 1);
+  const int row = static_cast<int>(clampedTo(0.0F, kRows, rise));
   const int everything = -static_cast<int>(valid);  // all bits, or none
   return {valid, column & everything, row & everything, std::sqrt(horizontal * horizontal + z * z)};
 }
