@@ -1,13 +1,12 @@
 // donex/OctomapNodelet in this process: parameters that cannot be meant, and what must not keep clouds out of the map.
-#include <atomic>
 #include <cmath>
 #include <string>
 
 #include <gtest/gtest.h>
 #include <nodelet/loader.h>
 #include <ros/ros.h>
-#include <tf2_msgs/TFMessage.h>
 
+#include "ros/lost_transform.h"
 #include "ros/manager_rig.h"
 #include "ros/unserved_nodelet.h"
 
@@ -73,17 +72,10 @@ TEST(OctomapNodelet, MapsWithAManagerThatDropsCallbacks) {
 }
 
 TEST(OctomapNodelet, ALostLatchedTransformIsAskedForAgain) {
-  // Says nothing to the first subscriber, as if the message had been lost, and tells every later one.
-  tf2_msgs::TFMessage mounting;
-  mounting.transforms.push_back(test::transformAt(0.0, "odom", "lidar_on_the_roof", 0.0, 2.0));
-  std::atomic<int> subscribers{0};
-  const ros::SubscriberStatusCallback connected = [&](const ros::SingleSubscriberPublisher& subscriber) {
-    if (++subscribers > 1) subscriber.publish(mounting);
-  };
-  const ros::Publisher tf = ros::NodeHandle().advertise<tf2_msgs::TFMessage>("/tf_static", 10, connected);
+  const test::LostTransform mounting("odom", "lidar_on_the_roof");
   MapRig rig;
   EXPECT_TRUE(rig.sendUntilMapped("lidar_on_the_roof"));
-  EXPECT_GE(subscribers, 2);
+  EXPECT_GE(mounting.subscribers(), 2);
 }
 
 }  // namespace

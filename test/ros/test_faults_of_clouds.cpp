@@ -1,7 +1,6 @@
 // Clouds that are labelled and should not be believed without a word, two sources of one thing, and tf that was lost.
-#include <tf2_msgs/TFMessage.h>
-
 #include "ros/faults_rig.h"
+#include "ros/lost_transform.h"
 
 namespace donex {
 namespace {
@@ -132,16 +131,9 @@ TEST_F(FaultsOfClouds, TwoSourcesOfOdometry) {
 }
 
 TEST_F(FaultsOfClouds, LatchedTfIsLost) {
-  // Says nothing to the first subscriber, as if the message had been lost, and tells every later one.
-  tf2_msgs::TFMessage mounting;
-  mounting.transforms.push_back(test::transformAt(0.0, "base_link", "lidar_on_the_roof", 0.0, 2.0));
-  std::atomic<int> subscribers{0};
-  const ros::SubscriberStatusCallback connected = [&](const ros::SingleSubscriberPublisher& subscriber) {
-    if (++subscribers > 1) subscriber.publish(mounting);
-  };
-  const ros::Publisher tf = nh_.advertise<tf2_msgs::TFMessage>("/tf_static", 10, connected);
+  const test::LostTransform mounting("base_link", "lidar_on_the_roof");
   load();
-  ASSERT_TRUE(waitFor([&] { return subscribers == 1; }));
+  ASSERT_TRUE(waitFor([&] { return mounting.subscribers() == 1; }));
   const auto isLabeled = [this] { return !received_.empty(); };
   do {
     advance();
@@ -152,7 +144,7 @@ TEST_F(FaultsOfClouds, LatchedTfIsLost) {
     if (is_over) break;
   } while (clouds_sent_ < 3000);
   ASSERT_TRUE(isLabeled()) << status_;
-  EXPECT_GE(subscribers, 2);
+  EXPECT_GE(mounting.subscribers(), 2);
   driveWell();
   conclude("the latched `/tf_static` is lost: tf is subscribed to anew after 5 s");
 }

@@ -1,5 +1,5 @@
 // Sensors on one topic are labelled as well as each on a topic of its own: the halves of a real sensor's turn where
-// DONEX_SHARED_DATA names a folder of sequences, and the rigs of a simulated vehicle.
+// DONEX_SHARED_DATA names a folder of sequences, and the rigs of a simulated vehicle (seed 1, or DONEX_SEED).
 #include <cstdlib>
 #include <deque>
 #include <filesystem>
@@ -145,6 +145,7 @@ Street simulatedStreet(const std::string& rig, double begin) {
   simulation::SimulatorOptions options;
   options.rig = rig;
   options.beams = 32;
+  if (const char* seed = std::getenv("DONEX_SEED")) options.seed = static_cast<decltype(options.seed)>(std::atoi(seed));
   options.duration = begin + kStretch;
   options.start_stamp = 10.0;  // ros::Time has no time before 0
   simulation::Simulator simulator("street", options);

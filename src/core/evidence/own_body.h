@@ -34,11 +34,8 @@ class OwnBody {
   explicit OwnBody(const SelfConfig& config) : OwnBody(config, Options()) {}
   OwnBody(const SelfConfig& config, const Options& options);
 
-  /// Sets `is_solid` to 0 where an echo is the body's, as far as it is known from earlier scans or named as a box.
-  void leaveOut(const Scan& scan, std::vector<std::uint8_t>& is_solid) const {
-    leaveOut(scan, 0, scan.echoes.size(), is_solid);
-  }
-  /// The same of the echoes from `first` to `last` (not included).
+  /// Sets `is_solid` to 0 where an echo from `first` to `last` (not included) is the body's, as far as it is known from
+  /// earlier scans or named as a box.
   void leaveOut(const Scan& scan, std::size_t first, std::size_t last, std::vector<std::uint8_t>& is_solid) const;
 
   /// Learns from a scan; `heights` of its echoes above ground [m], from `lowest` on they count: the ground also stays

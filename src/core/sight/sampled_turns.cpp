@@ -15,7 +15,8 @@ TurnPart SampledTurns::arrive(const Scan& scan) {
 }
 
 std::size_t SampledTurns::memoryBytes() const {
-  return sample_.capacity() * sizeof(Eigen::Vector3f) + is_echo_.capacity() + pixels_.memoryBytes();
+  return sample_.capacity() * sizeof(Eigen::Vector3f) + is_echo_.capacity() + pixels_.memoryBytes() +
+         turns_.memoryBytes();
 }
 
 double SampledTurns::bytesFor(double echoes) {

@@ -24,7 +24,7 @@ class OwnBodyTest : public testing::Test {
 
   std::vector<std::uint8_t> found(const OwnBody& body, const Scan& scan) const {
     std::vector<std::uint8_t> is_solid(scan.echoes.size(), 1), is_body;
-    body.leaveOut(scan, is_solid);
+    body.leaveOut(scan, 0, scan.echoes.size(), is_solid);
     for (const std::uint8_t solid : is_solid) is_body.push_back(solid != 0 ? 0 : 1);
     return is_body;
   }

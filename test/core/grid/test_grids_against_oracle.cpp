@@ -5,11 +5,11 @@
 
 #include "core/grid/grid_2d.h"
 #include "core/grid/grid_3d.h"
-#include "core/sector.h"
 #include "core/sight/ray_index.h"
 #include "donex/detector.h"
 #include "support/oracle.h"
 #include "support/random_scans.h"
+#include "support/sectors.h"
 
 namespace donex {
 namespace {
@@ -138,15 +138,6 @@ void compareGridOnParts(const Config& config, unsigned seed) {
   EXPECT_GT(new_echoes, 100U);
 }
 
-/// The scan's echoes by azimuth.
-std::vector<Scan> sectorsOf(const Scan& scan, std::size_t count) {
-  Scan none = scan;
-  none.echoes.clear();
-  std::vector<Scan> sectors(count, none);
-  for (const Eigen::Vector3f& echo : scan.echoes) sectors[sectorOf(echo, count)].echoes.push_back(echo);
-  return sectors;
-}
-
 /// What the parts are together, in their order: where resampled contents meet in one voxel, the first one stays.
 Scan together(const std::vector<Scan>& parts) {
   Scan scan = parts.front();
@@ -162,7 +153,7 @@ void comparePartsWithWhole(const Config& config, unsigned seed) {
   Oracle whole(config);
   oracle::OfParts<Oracle> in_parts(config);
   for (int k = 0; k < kScans; ++k) {
-    const std::vector<Scan> parts = sectorsOf(scans.next(kEchoes / 2), 1 + static_cast<std::size_t>(k) % 5);
+    const std::vector<Scan> parts = testing::sectorsOf(scans.next(kEchoes / 2), 1 + static_cast<std::size_t>(k) % 5);
     in_parts.beginTurn();
     oracle::Labels labels;
     for (const Scan& part : parts) {
@@ -214,7 +205,7 @@ TEST_P(Parts, HaveTogetherTheLabelsOfTheWhole) {
   EchoLabels expected, of_part;
   std::size_t dynamic = 0;
   for (int k = 0; k < kScans; ++k) {
-    const std::vector<Scan> sectors = sectorsOf(scans.next(20000), static_cast<std::size_t>(parts));
+    const std::vector<Scan> sectors = testing::sectorsOf(scans.next(20000), static_cast<std::size_t>(parts));
     whole->process(together(sectors), expected);
     EchoLabels labels;
     for (const Scan& sector : sectors) {

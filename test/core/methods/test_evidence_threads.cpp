@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "core/sector.h"
 #include "donex/detector.h"
-#include "simulation/simulator.h"
+#include "support/sectors.h"
+#include "support/simulated_drive.h"
 
 namespace donex {
 namespace {
@@ -14,28 +14,13 @@ namespace {
 constexpr int kScans = 14;
 constexpr double kPeriod = 0.1;  // [s]
 
-/// A turn cut into sectors that come one after the other.
-std::vector<Scan> partsOf(const Scan& whole, std::size_t count) {
-  std::vector<Scan> parts(count, whole);
-  for (std::size_t i = 0; i < count; ++i) {
-    parts[i].stamp += kPeriod * static_cast<double>(i) / static_cast<double>(count);
-    parts[i].echoes.clear();
-  }
-  for (const Eigen::Vector3f& echo : whole.echoes) parts[sectorOf(echo, count)].echoes.push_back(echo);
-  return parts;
-}
-
 /// Traffic and pedestrians at a crossing, each turn in so many parts; made once.
 const std::vector<Scan>& crossing(std::size_t parts) {
   static std::map<std::size_t, std::vector<Scan>> made;
   std::vector<Scan>& scans = made[parts];
   if (!scans.empty()) return scans;
-  simulation::SimulatorOptions options;
-  options.beams = 64;
-  simulation::Simulator simulator("intersection", options);
-  simulation::SimulatedScan scan;
-  for (int k = 0; k < kScans && simulator.next(scan); ++k) {
-    for (Scan& part : partsOf(scan.coreScan(), parts)) scans.push_back(std::move(part));
+  for (const testing::TrueScan& turn : testing::simulatedDrive("intersection", 64, kScans)) {
+    for (Scan& part : testing::sectorsOf(turn.scan, parts, kPeriod)) scans.push_back(std::move(part));
   }
   return scans;
 }

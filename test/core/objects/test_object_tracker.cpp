@@ -20,8 +20,7 @@ class Followed {
  public:
   explicit Followed(const ObjectConfig& config = {}) : segmenter_(60.0, config), tracker(config) {}
 
-  /// Number of the scan's echoes that move. `goes_on_with`: the object that the first segment's echoes beside belong
-  /// to.
+  /// Number of the scan's echoes that move. `goes_on_with`: what the first segment's echoes beside belong to.
   std::size_t step(const JudgedScene& scene, std::uint32_t goes_on_with = 0) {
     history_.arrive(scene.scan(), scene.judged.is_echo);
     history_.add(scene.scan(), scene.judged.is_echo);
