@@ -144,7 +144,9 @@ void visitMotion(MotionConfig& m, Visitor& visit) {
         m.max_extrapolation, 0.0, 0.5);
   visit(ParameterInfo{"odometry_timeout", "s", "how long a cloud waits for odometry that covers its stamp", false},
         m.odometry_timeout, 0.0, 10.0);
-  visit(ParameterInfo{"deskew", "", "move each echo to the cloud's stamp by its own time, where the cloud carries one",
+  visit(ParameterInfo{"deskew", "",
+                      "move each echo to the cloud's stamp by its own time, or by its azimuth where a spinning "
+                      "sensor's clouds carry none",
                       false},
         m.deskew);
   visit(ParameterInfo{"publish_tf", "",

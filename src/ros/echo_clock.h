@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <sensor_msgs/PointCloud2.h>
 
+#include "core/motion/azimuth_times.h"
 #include "core/motion/deskew_choice.h"
 #include "donex/config.h"
 #include "ros/cloud_layout.h"
@@ -42,31 +43,57 @@ class EchoClock {
   const std::string& deskewedBy() const { return deskewed_by_; }
   /// Why there is nothing to de-skew by, although nobody has made a mistake that is known: once, else empty.
   std::string untoldLack();
+  /// Whether the cloud that was read last carries no times.
+  bool isByAzimuth() const { return is_by_azimuth_; }
   /// Whether the configured field is missing.
   bool lacksToldField() const { return state_ == State::kTold; }
 
   /// Poses cannot be compared with those before.
-  void reset() { choice_.reset(); }
+  void reset() {
+    choice_.reset();
+    choice_by_azimuth_.reset();
+  }
 
  private:
-  enum class State { kNotYet, kOff, kAtRest, kTold, kNoField, kNotUnderstood, kAlike, kStrange, kUndone, kTimes };
+  enum class State {
+    kNotYet,
+    kOff,
+    kAtRest,
+    kTold,
+    kNoField,
+    kNotUnderstood,
+    kAlike,
+    kStrange,
+    kUndone,
+    kTimes,
+    kAzimuth
+  };
 
   bool isAsked() const;
+  bool lacksTimes(const CloudLayout& layout, const CloudLayout& used, const EchoTimes& times) const;
+  void tellByAzimuth(double stamp, const CloudLayout& layout, const std::vector<Eigen::Vector3f>& echoes,
+                     EchoTimes& times);
+  DeskewChoice& choice() { return is_by_azimuth_ ? choice_by_azimuth_ : choice_; }
   State stateOf(const CloudLayout& layout, const CloudLayout& used, const EchoTimes& times) const;
   std::string describe(State state, const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout,
                        const EchoTimes& times) const;
+  std::string azimuth() const;
+  std::string azimuthLack() const;
 
   MotionConfig motion_;
   std::string wanted_;  // time_field
   TimeUnit unit_;
-  DeskewChoice choice_;
-  bool is_compared_ = false;         // the cloud that was read last
-  double first_ = 0.0, last_ = 0.0;  // of its times, as they are read [s]
+  DeskewChoice choice_, choice_by_azimuth_;
+  AzimuthTimes azimuth_times_;
+  bool has_order_ = false;  // of the cloud that was looked at last
+  // The cloud that was read last:
+  bool is_compared_ = false, is_by_azimuth_ = false;
+  double first_ = 0.0, last_ = 0.0;  // its times, as they are read [s]
   std::string reading_finding_;
   int not_understood_ = 0;  // clouds in a row whose field only looks like times
   State state_ = State::kNotYet;
   std::string deskewed_by_ = "not known yet";
-  std::string told_lack_;
+  State told_lack_ = State::kNotYet;
 };
 
 /// Sensors on one topic differ in what their times are; they are told apart by the frames of their clouds.

@@ -31,7 +31,8 @@ double usualUnit(TimeEncoding encoding) {
 
 bool TimeUnit::observe(const sensor_msgs::PointCloud2& cloud, CloudLayout& layout) {
   const double stamp = cloud.header.stamp.toSec();
-  const auto interval = intervalUntil(stamp);
+  follow(stamp);
+  const auto interval = this->interval();
   const auto span = layout.time ? sampledSpan(cloud, layout) : std::nullopt;
   const bool is_judged = layout.time && !layout.time->is_told;
   if (!is_judged || (field_ && !isSame(*field_, *layout.time))) {
@@ -74,11 +75,14 @@ void TimeUnit::apply(CloudLayout& layout) const {
   }
 }
 
-/// The median of the last intervals. Clouds of one stamp are parts of one scan or of synchronised sensors.
-std::optional<double> TimeUnit::intervalUntil(double stamp) {
+/// Clouds of one stamp are parts of one scan or of synchronised sensors.
+void TimeUnit::follow(double stamp) {
   if (last_stamp_ && stamp > *last_stamp_) intervals_.push_back(stamp - *last_stamp_);
   last_stamp_ = stamp;
   if (intervals_.size() > options_.intervals) intervals_.pop_front();
+}
+
+std::optional<double> TimeUnit::interval() const {
   if (intervals_.empty()) return std::nullopt;
   std::vector<double> sorted(intervals_.begin(), intervals_.end());
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);

@@ -53,6 +53,8 @@ class TimeUnit {
   /// Sets the found unit in a layout of the same stream; removes a field that only looks like a time and is none.
   void apply(CloudLayout& layout) const;
 
+  /// From cloud to cloud: the median of the last [s]; nothing before the second.
+  std::optional<double> interval() const;
   /// What was found, with the figures; empty while the unit is the usual one.
   const std::string& finding() const { return finding_; }
   /// Fit to follow the field's name: "microseconds"; empty while the unit is the usual one.
@@ -69,7 +71,7 @@ class TimeUnit {
   };
   static const std::array<Unit, 4>& units();
 
-  std::optional<double> intervalUntil(double stamp);
+  void follow(double stamp);
   std::optional<Span> sampledSpan(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout) const;
   void bound(const Span& span, double interval, TimeField& field) const;
   std::optional<Unit> absoluteUnit(const Span& span, double stamp) const;

@@ -1,8 +1,12 @@
-// Echo times that do not count from the stamp as they are written, and clouds that were de-skewed before: found from
-// the scans of a vehicle that turns at 30 degrees a second, and labelled as well as if nobody had made a mistake.
+// Echo times that do not count from the stamp as they are written, clouds that carry none, and clouds that were
+// de-skewed before: found from the scans of a vehicle that turns at 30 degrees a second, and labelled as well as if
+// nobody had made a mistake.
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <deque>
+#include <numeric>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -17,9 +21,12 @@ namespace {
 using simulation::SimulatedScan;
 
 constexpr double kTurn = 0.1;         // of the sensor [s]
-constexpr int kScans = 75;            // of the drive
+constexpr int kScans = 120;           // of the drive
 constexpr int kJudged = 15;           // the last ones: by then the reading is known
 constexpr double kFarthestOff = 0.1;  // IoU below that of the drive without a mistake
+
+/// What a cloud tells of its echoes' times: these, or by the order of the echoes.
+enum class Order { kTimed, kFirings, kRings, kNone };
 
 struct Mistake {
   const char* name;
@@ -27,6 +34,7 @@ struct Mistake {
   float factor, shift;  ///< of the times, which rightly end with 0 [s]
   bool is_deskewed_before;
   const char* finding;  ///< part of what is said; empty for nothing
+  Order order = Order::kTimed;
 };
 
 class MistakenDrive {
@@ -42,11 +50,12 @@ class MistakenDrive {
     SimulatedScan scan;
     while (simulator.next(scan)) {
       for (const OdometrySample& sample : scan.odometry) pipeline_.addOdometry(*toOdometry(sample, {}));
+      arrange(scan, mistake.order);
       truth_.push_back({scan.coreScan(), scan.labels});
       if (mistake.is_deskewed_before) deskewBefore(simulator, scan);
       for (auto& echo : scan.echoes) echo.time = mistake.factor * echo.time + mistake.shift;
       scan.stamp += mistake.stamp_shift;
-      pipeline_.addCloud(toCloud(scan, {}), scan.stamp);
+      pipeline_.addCloud(cloudOf(scan, mistake.order), scan.stamp);
       while (pipeline_.step(scan.stamp)) {
       }
     }
@@ -58,6 +67,29 @@ class MistakenDrive {
   std::string deskewedBy() const { return pipeline_.deskewedBy(); }
 
  private:
+  /// Ring by ring, as converters write, or without any order; else as they were measured.
+  static void arrange(SimulatedScan& scan, Order order) {
+    const SimulatedScan measured = scan;
+    std::vector<std::size_t> from(scan.echoes.size());
+    std::iota(from.begin(), from.end(), std::size_t{0});
+    if (order == Order::kNone) std::shuffle(from.begin(), from.end(), std::minstd_rand());
+    if (order == Order::kRings) {
+      std::stable_sort(from.begin(), from.end(),
+                       [&](std::size_t a, std::size_t b) { return measured.echoes[a].ring < measured.echoes[b].ring; });
+    }
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      scan.echoes[i] = measured.echoes[from[i]];
+      scan.labels[i] = measured.labels[from[i]];
+    }
+  }
+
+  static sensor_msgs::PointCloud2Ptr cloudOf(const SimulatedScan& scan, Order order) {
+    const auto cloud = toCloud(scan, {});
+    if (order == Order::kTimed) return cloud;
+    for (auto& field : cloud->fields) field.name = field.name == "time" ? "unused" : field.name;
+    return cloud;
+  }
+
   static void deskewBefore(const simulation::Simulator& simulator, SimulatedScan& scan) {
     EgoMotion motion;
     for (double stamp = scan.stamp - 1.2 * kTurn; stamp < scan.stamp + 0.015; stamp += 0.01) {
@@ -112,6 +144,12 @@ TEST_P(Reading, IsFoundAndTheLabelsAreRight) {
   EXPECT_GT(drive.iou(), right - kFarthestOff) << "without a mistake it is " << right;
 }
 
+TEST(ShuffledClouds, DoNotTellHowTheSensorTurned) {
+  const MistakenDrive drive({"", 0.0, 1.0F, 0.0F, false, "", Order::kNone});
+  EXPECT_EQ(drive.finding(), "");
+  EXPECT_NE(drive.deskewedBy().find("the order of the echoes does not tell"), std::string::npos) << drive.deskewedBy();
+}
+
 constexpr float kSpan = static_cast<float>(kTurn);
 
 INSTANTIATE_TEST_SUITE_P(
@@ -121,7 +159,12 @@ INSTANTIATE_TEST_SUITE_P(
                       Mistake{"stamp at the end, times from the begin", 0.0, 1.0F, kSpan, false, "earlier"},
                       Mistake{"stamp at the begin, times to the end", -kTurn, 1.0F, 0.0F, false, "later"},
                       Mistake{"times counted backwards", 0.0, -1.0F, 0.0F, false, "backwards"},
-                      Mistake{"de-skewed before", 0.0, 1.0F, 0.0F, true, "undone already"}),
+                      Mistake{"de-skewed before", 0.0, 1.0F, 0.0F, true, "undone already"},
+                      Mistake{"no times", 0.0, 1.0F, 0.0F, false, "scan's end", Order::kFirings},
+                      Mistake{"no times, stamped at the begin", -kTurn, 1.0F, 0.0F, false, "scan's begin",
+                              Order::kFirings},
+                      Mistake{"no times, ring by ring", 0.0, 1.0F, 0.0F, false, "scan's end", Order::kRings},
+                      Mistake{"no times, de-skewed before", 0.0, 1.0F, 0.0F, true, "", Order::kFirings}),
     [](const auto& run) {
       std::string name;
       for (const char letter : std::string(run.param.name))

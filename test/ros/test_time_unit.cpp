@@ -117,13 +117,13 @@ TEST(TimesOfNoUse, AreSaidOnceWithTheFieldsThereAre) {
     Written written;
     const char* text;
   } kCases[]{{{"intensity", PointField::FLOAT32, 0.1}, "no times of echoes; fields: x y z intensity"},
-             {{"time", PointField::FLOAT32, 0.0}, "all times in 'time' are alike (0 s)"},
+             {{"time", PointField::FLOAT32, 0.0}, "all times in 'time' are alike; "},
              {{"time_of_day", PointField::FLOAT32, 17.0}, "'time_of_day' looks like echoes' times"}};
   for (const auto& [written, text] : kCases) {
     const Drive drive(written);
     ASSERT_EQ(drive.rig.not_deskewed.size(), 1U) << text;
     EXPECT_NE(drive.rig.not_deskewed[0].find(text), std::string::npos) << drive.rig.not_deskewed[0];
-    EXPECT_EQ(drive.rig.pipeline.deskewedBy(), drive.rig.not_deskewed[0]);
+    EXPECT_NE(drive.rig.pipeline.deskewedBy().find(text), std::string::npos) << drive.rig.pipeline.deskewedBy();
   }
 }
 

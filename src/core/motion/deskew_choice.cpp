@@ -82,7 +82,7 @@ bool DeskewChoice::isCovered(const Sample& sample) const {
   double first = 0.0, last = 0.0;
   for (const TimeReading& reading : readings_) {
     const double span = sample.last - sample.first;
-    for (const double time : {reading(sample.first, span), reading(sample.last, span)}) {
+    for (const double time : {reading.scaled(sample.first, span), reading.scaled(sample.last, span)}) {
       first = std::min(first, time);
       last = std::max(last, time);
     }
@@ -142,8 +142,9 @@ std::vector<double> DeskewChoice::fits() const {
 /// On average, and in nearly every pair.
 bool DeskewChoice::fitsBetter(std::size_t reading, std::size_t other) const {
   const std::vector<double> means = fits();
-  const auto lost = std::count_if(fits_.begin(), fits_.end(),
-                                  [&](const std::vector<double>& fits) { return fits[reading] <= fits[other]; });
+  const auto lost = std::count_if(fits_.begin(), fits_.end(), [&](const std::vector<double>& fits) {
+    return fits[reading] < (1.0 - options_.lost) * fits[other];
+  });
   return means[reading] > (1.0 + options_.least_gain) * means[other] &&
          static_cast<double>(lost) <= options_.most_lost * static_cast<double>(fits_.size());
 }

@@ -1,6 +1,7 @@
 // What the times of a stream's echoes mean, told by which of several readings lets the scans fit one another best.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <deque>
 #include <optional>
@@ -20,9 +21,15 @@ struct TimeReading {
   double factor = 1.0;
   double spans = 0.0;
   const char* meaning = "";
+  /// Times that count from the scan's begin go round by so much first, in spans: the turn began elsewhere.
+  double around = 0.0;
 
   bool undoesNothing() const { return factor == 0.0; }
-  double operator()(double time, double span) const { return factor * time + spans * span; }
+  double operator()(double time, double span) const {
+    return scaled(around > 0.0 && span > 0.0 ? std::fmod(time + around * span, span) : time, span);
+  }
+  /// Going round leaves the ends of the times where they are.
+  double scaled(double time, double span) const { return factor * time + spans * span; }
 };
 
 /// Compares pairs of scans that are some way apart, in every reading, as the odometry places them. Where the vehicle
@@ -42,7 +49,8 @@ class DeskewChoice {
     double kernel = 0.15;               ///< an echo so far from a surface weighs a quarter [m]
     std::size_t window = 10;            ///< newest pairs that count
     std::size_t least_pairs = 6;        ///< of these, before another reading is believed
-    double most_lost = 0.1;             ///< of the pairs, in which it may fit worse
+    double most_lost = 0.2;             ///< of the pairs, in which it may fit worse,
+    double lost = 0.01;                 ///< by more than this share: on straight roads readings hardly differ
     double least_gain = 0.02;           ///< by which another reading has to fit better, on average
     double lost_after = 2.0;            ///< a pair whose scans the track does not reach by then is given up [s]
   };

@@ -9,6 +9,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/azimuth.h"
 #include "core/grid/simd.h"
 #include "core/grid/storage.h"
 #include "core/grid/workers.h"
@@ -61,7 +62,6 @@ class SightPixels {
   static double bytesFor(double echoes) { return roomFor(3.0 * sizeof(float) * echoes); }
 
  private:
-  static float azimuthOf(float y, float x);
   void resize(std::size_t count) {
     resizeTo(columns_, count);
     resizeTo(rows_, count);
@@ -73,22 +73,8 @@ class SightPixels {
   std::vector<Eigen::Vector3f> moved_;  ///< echoes of a part, in the frame of its turn
 };
 
-// Loops over both below are wide only where nothing in them is a branch: compilers make branches of what is computed in
-// one case alone, so that everything here is computed in any case.
-
-/// atan2 to 1e-4 rad, the same on every machine; monotone within an octant, which is all a column needs.
-inline float SightPixels::azimuthOf(float y, float x) {
-  const float ax = std::abs(x), ay = std::abs(y);
-  const auto is_beside = static_cast<float>(ay > ax), is_ahead = 1.0F - is_beside;
-  const float a = (is_beside * ax + is_ahead * ay) / (is_beside * ay + is_ahead * ax);  // the smaller by the larger one
-  const float s = a * a;
-  const float in_octant = ((-0.0464964749F * s + 0.15931422F) * s - 0.327622764F) * s * a + a;
-  const float in_quadrant = is_beside * (0.5F * kPiF) + (is_ahead - is_beside) * in_octant;
-  const auto is_behind = static_cast<float>(x < 0.0F);
-  const float angle = is_behind * kPiF + (1.0F - 2.0F * is_behind) * in_quadrant;
-  return y < 0.0F ? -angle : angle;
-}
-
+/// Loops over it are wide only where nothing in it is a branch: compilers make branches of what is computed in one case
+/// alone, so that everything here is computed in any case.
 inline SightPixels::Pixel SightPixels::of(float x, float y, float z) {
   const float horizontal = std::sqrt(x * x + y * y);
   const float slope = z / horizontal;
