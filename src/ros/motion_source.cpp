@@ -246,9 +246,11 @@ MotionAnswer MotionSource::fromScans(const ScanTimes& times, const std::string& 
   const double stamp = times.stamp.toSec();
   const Eigen::Isometry3d before = scan_odometry_.odomFromBase();
   const EgoMotion& track = scan_odometry_.track();
-  const double elapsed = track.empty() ? 0.0 : stamp - track.newestStamp();
+  const double moment_before = track.empty() ? 0.0 : track.newestStamp();
   ScanMotion motion;
-  motion.tracked = scan_odometry_.locate(stamp, echoes, *mounting_);
+  const std::vector<float> none;
+  motion.tracked =
+      scan_odometry_.locate(stamp, echoes, times.of_echoes != nullptr ? *times.of_echoes : none, *mounting_);
   if (motion.tracked->status == TrackingStatus::kLost) {
     return MotionMissing{DropReason::kLost,
                          textOf("the cloud of ", stamp, " s does not fit those before, or is too small"), false};
@@ -257,6 +259,7 @@ MotionAnswer MotionSource::fromScans(const ScanTimes& times, const std::string& 
   motion.odom_from_base = scan_odometry_.odomFromBase();
   motion.odom_frame = frameName(config_.fixed_frame);
   motion.base_frame = mounted_frame_;
+  const double elapsed = motion.tracked->moment - moment_before;
   const bool has_velocity = !motion.tracked->is_new_track && elapsed > 0.0;
   if (has_velocity) motion.twist = twistBetween(before, motion.odom_from_base, elapsed);
   const bool is_covered = track.poseAt(stamp + times.first) && track.poseAt(stamp + times.last);

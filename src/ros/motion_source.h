@@ -34,7 +34,8 @@ struct OdometryVerdict {
 /// The moments of a scan that have to be covered.
 struct ScanTimes {
   ros::Time stamp;
-  double first = 0.0, last = 0.0;  ///< echoes' times after the stamp [s]; both zero without de-skewing
+  double first = 0.0, last = 0.0;                 ///< echoes' times after the stamp [s]; both zero without de-skewing
+  const std::vector<float>* of_echoes = nullptr;  ///< each one's; null without
 
   bool spanTime() const { return last > first; }
 };
@@ -95,6 +96,8 @@ class MotionSource {
   bool wantsOdometry() const;
 
   void reset();
+  /// What was found in the clouds so far was found of distorted ones: a new track begins.
+  void forgetClouds() { scan_odometry_.reset(); }
 
  private:
   MotionAnswer fromOdometry(const ScanTimes& times, const std::string& sensor_frame, bool settle) const;

@@ -66,11 +66,12 @@ void Pipeline::observeTimes(WaitingCloud& waiting) {
 
 /// What the grid remembers was placed by times that meant something else.
 void Pipeline::followTimes(const ScanMotion& motion, EchoClock& clock) {
-  const bool is_told = !motion.tracked && !motion.sensor_from_cloud;
+  const bool is_told = (!motion.tracked || clock.isByAzimuth()) && !motion.sensor_from_cloud;
   if (!is_told || !clock.follow(scan_.stamp, motion.odom_from_base * motion.base_from_sensor)) return;
   parsed_ = 0;
   if (events_.reading_found) events_.reading_found(clock.readingFinding());
   if (needsWholeDrive(config_.method)) return;
+  motion_.forgetClouds();
   reset();
   events_.forgotten("the meaning of the echoes' times has been found: the grid is forgotten");
 }
@@ -189,7 +190,8 @@ MotionAnswer Pipeline::motionOf(const WaitingCloud& waiting, bool settle) {
     parse(waiting);
     const bool was_known = motion_.source() != OdometrySource::kAuto;
     const std::string frame = placer_.movingFrame(header.frame_id, motion_.source());
-    auto motion = motion_.during({header.stamp, times_.first, times_.last}, frame, settle, scan_.echoes);
+    auto motion =
+        motion_.during({header.stamp, times_.first, times_.last, &times_.after_stamp}, frame, settle, scan_.echoes);
     const bool is_chosen = !was_known && motion_.source() != OdometrySource::kAuto;
     if (is_chosen && events_.motion_chosen) events_.motion_chosen(motion_.choice());
     auto* known = std::get_if<ScanMotion>(&motion);

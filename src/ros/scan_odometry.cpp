@@ -17,15 +17,16 @@ EgoMotion::Options trackOptions() {
 ScanOdometry::ScanOdometry() : track_(trackOptions()) {}
 
 const TrackedScan& ScanOdometry::locate(double stamp, const std::vector<Eigen::Vector3f>& echoes,
-                                        const Eigen::Isometry3d& base_from_sensor) {
-  const TrackedScan& tracked = odometry_.locate(stamp, echoes);
-  // The odometry frame is where the vehicle was at the start, not the sensor.
-  odom_from_base_ = base_from_sensor * tracked.odom_from_sensor * base_from_sensor.inverse();
+                                        const std::vector<float>& times, const Eigen::Isometry3d& base_from_sensor) {
+  const TrackedScan& tracked = odometry_.locate(stamp, echoes, times);
   if (tracked.is_new_track) track_.reset();
   OdometrySample sample;
-  sample.stamp = stamp;
-  sample.odom_from_base = odom_from_base_;
+  sample.stamp = tracked.moment;
+  // The odometry frame is where the vehicle was at the start, not the sensor.
+  sample.odom_from_base = base_from_sensor * tracked.odom_from_sensor * base_from_sensor.inverse();
   track_.add(sample);
+  // In a turn the pose at the stamp is another one than in the middle of the scan.
+  odom_from_base_ = track_.poseAt(stamp) ? *track_.poseAt(stamp) : sample.odom_from_base;
   return tracked;
 }
 

@@ -13,13 +13,15 @@ class ScanOdometry {
  public:
   ScanOdometry();
 
-  /// Where the scan was measured. `echoes` in the sensor frame [m]; the mounting must stay until reset().
-  const TrackedScan& locate(double stamp, const std::vector<Eigen::Vector3f>& echoes,
+  /// Where the scan was measured. `echoes` in the sensor frame [m], as they were measured; `times` of each after the
+  /// stamp [s], empty where there are none. The mounting must stay until reset().
+  const TrackedScan& locate(double stamp, const std::vector<Eigen::Vector3f>& echoes, const std::vector<float>& times,
                             const Eigen::Isometry3d& base_from_sensor);
 
   /// Of the scan located last: 1 for each echo that moves.
   void learn(const std::vector<std::uint8_t>& dynamic) { odometry_.learn(dynamic); }
 
+  /// At the stamp of the scan located last.
   Eigen::Isometry3d odomFromBase() const { return odom_from_base_; }
   /// The poses of the vehicle; covers some tenths of a second beyond the newest scan, by constant velocity.
   const EgoMotion& track() const { return track_; }

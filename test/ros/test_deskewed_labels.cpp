@@ -75,7 +75,7 @@ Scene roundabout() {
 
 /// A drive through it as messages, labelled by the pipeline as a node's would be.
 struct Drive {
-  Drive(bool distortion, bool deskew) {
+  Drive(bool distortion, bool deskew, OdometrySource source = OdometrySource::kPose) {
     const Scene scene = roundabout();
     const auto sensor = simulation::makeSensorModel(kBeams);
     simulation::SensorOptions options;
@@ -83,6 +83,7 @@ struct Drive {
     simulation::Sweep sweep(scene, scene.ego.base_from_sensor, sensor, options);
     Config config;
     config.motion.deskew = deskew;
+    config.motion.source = source;
     tf2::BufferCore tf;
     tf.setTransform(mountingOf(scene.ego.base_from_sensor, 1.0, {}), "test", true);
     Pipeline pipeline(config, tf, events());
@@ -148,6 +149,15 @@ TEST(DeskewedLabels, AreThoseOfUndistortedScans) {
   EXPECT_GT(undistorted.moving, 5000) << "echoes to be right about";
   EXPECT_GT(undistorted.score.iou(), 0.7);
   EXPECT_NEAR(deskewed.score.iou(), undistorted.score.iou(), 0.01);
+  EXPECT_LT(distorted.score.iou(), deskewed.score.iou() - 0.05) << "the distortion matters";
+}
+
+TEST(DeskewedLabels, AreThoseOfUndistortedScansByAMotionFoundInThem) {
+  constexpr OdometrySource kFromScans = OdometrySource::kLidar;
+  const Drive undistorted(false, true), deskewed(true, true, kFromScans), distorted(true, false, kFromScans);
+  RecordProperty("iou_deskewed", std::to_string(deskewed.score.iou()));
+  RecordProperty("iou_distorted", std::to_string(distorted.score.iou()));
+  EXPECT_NEAR(deskewed.score.iou(), undistorted.score.iou(), 0.02);
   EXPECT_LT(distorted.score.iou(), deskewed.score.iou() - 0.05) << "the distortion matters";
 }
 

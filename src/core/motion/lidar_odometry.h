@@ -10,6 +10,7 @@
 #include "core/motion/echo_selection.h"
 #include "core/motion/gaussian_map.h"
 #include "core/motion/scan_registration.h"
+#include "donex/motion/ego_motion.h"
 
 namespace donex {
 
@@ -25,7 +26,8 @@ const char* describe(TrackingStatus status);
 
 /// Where one scan was measured.
 struct TrackedScan {
-  Eigen::Isometry3d odom_from_sensor = Eigen::Isometry3d::Identity();
+  double moment = 0.0;                                                 ///< the middle of the scan's echoes [s]
+  Eigen::Isometry3d odom_from_sensor = Eigen::Isometry3d::Identity();  ///< then
   TrackingStatus status = TrackingStatus::kStarting;
   bool is_new_track = true;  ///< poses before and from here on cannot be compared
   int undetermined = 0;      ///< directions left open, of six
@@ -33,9 +35,9 @@ struct TrackedScan {
   double least_information = 0.0;
 };
 
-/// LiDAR odometry. Predicts by constant velocity of its own and knows no other odometry. Scans are registered as they
-/// were measured: at a steady motion all are distorted alike, and de-skewing by its poses comes after. Memory and time
-/// a scan are bounded. Not thread-safe.
+/// LiDAR odometry. Predicts by constant velocity of its own and knows no other odometry. Echoes with times are moved by
+/// the predicted velocity to the middle of their scan, where an error of it hardly matters: the earlier ones and the
+/// later ones are off to either side. Memory and time a scan are bounded. Not thread-safe.
 class LidarOdometry {
  public:
   struct Options {
@@ -58,6 +60,8 @@ class LidarOdometry {
     double least_matched = 0.1;       ///< a smaller share of echoes on known surfaces is a loss
     double most_acceleration = 40.0;  ///< no vehicle brakes or turns in as hard: a loss [m/s^2]
     double most_turn = 0.35;          ///< nor turns by so much more than predicted between two scans [rad]
+    int most_corrections = 2;         ///< of a scan that was straightened by a velocity it does not have,
+    double least_correction = 0.02;   ///< where that has moved its first and last echoes so much [m]
     double new_track_after = 0.45;    ///< a loss lasts so long: a new track begins [s]
     double longest_prediction = 1.0;  ///< then a vehicle is taken to stand [s]
   };
@@ -65,9 +69,11 @@ class LidarOdometry {
   LidarOdometry() : LidarOdometry(Options()) {}
   explicit LidarOdometry(const Options& options);
 
-  /// Registers a scan, of echoes in the sensor frame [m]; non-finite ones are left out. A stamp [s] that is not later
-  /// than the last one is taken for the same moment.
-  const TrackedScan& locate(double stamp, const std::vector<Eigen::Vector3f>& echoes);
+  /// Registers a scan, of echoes in the sensor frame [m], as they were measured; non-finite ones are left out. `times`:
+  /// of each echo after the stamp [s]; empty where all belong to the stamp. A moment [s] that is not later than the
+  /// last one is taken for the same.
+  const TrackedScan& locate(double stamp, const std::vector<Eigen::Vector3f>& echoes,
+                            const std::vector<float>& times = {});
 
   /// What moves in the scan located last, 1 for each echo that does: the map is to hold what stands. Optional; without
   /// it the next scan finds all echoes in the map.
@@ -77,7 +83,24 @@ class LidarOdometry {
   std::size_t memoryBytes() const;
 
  private:
-  void follow(double stamp);
+  struct Cloud {
+    const std::vector<Eigen::Vector3f>& echoes;
+    const std::vector<float>& times;
+  };
+  /// A motion in a time [s], in sensor axes.
+  struct Step {
+    Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+    double time = 0.0;  // 0 where none is known
+
+    bool isKnown() const { return time > 0.0; }
+    Eigen::Isometry3d during(double duration) const;
+  };
+
+  void readTimes(double stamp, const std::vector<float>& times);
+  void take(const Cloud& cloud, const std::vector<std::uint32_t>& from, const Step& step,
+            std::vector<Eigen::Vector3f>& taken);
+  void follow(const Cloud& cloud);
+  void correct(const Cloud& cloud, double elapsed, Registration& registration);
   Eigen::Isometry3d predicted(double stamp) const;
   Registration registered(const Eigen::Isometry3d& prediction, double elapsed);
   bool slides(const Registration& registration);
@@ -86,6 +109,7 @@ class LidarOdometry {
   double fitnessAt(const Eigen::Isometry3d& pose, std::size_t stride);
   Eigen::Isometry3d searched(const Eigen::Isometry3d& prediction, double reach);
   bool isSound(const Registration& registration, const Eigen::Isometry3d& prediction, double elapsed) const;
+  void startMap();
   void startTrack(double stamp, const Eigen::Isometry3d& pose);
   void accept(const Registration& registration, const Eigen::Isometry3d& prediction, double stamp);
   void lose(const Eigen::Isometry3d& prediction, double stamp);
@@ -97,8 +121,7 @@ class LidarOdometry {
   ScanRegistration registration_;
   EchoSelection selection_;
   TrackedScan last_;
-  Eigen::Isometry3d step_ = Eigen::Isometry3d::Identity();  // the last motion between two scans, in sensor axes
-  double step_time_ = 0.0;                                  // [s]; 0 where none is known
+  Step step_;  // the last one between two scans
   double last_stamp_ = 0.0;
   double squared_error_ = 0.0;        // of predictions, fading [m^2]
   double usual_fitting_ = 0.0;        // share of fitting echoes, fading
@@ -107,7 +130,9 @@ class LidarOdometry {
   bool is_anchored_ = false;    // the velocity was found in scans that leave no doubt of it
   double determined_at_ = 0.0;  // stamp of the newest scan that left nothing open [s]
   // Of the scan in hand.
+  double first_ = 0.0, last_time_ = 0.0;  // of its times [s]
   std::vector<Eigen::Vector3f> source_, to_keep_;
+  std::vector<float> times_;  // of either, from the middle on [s]
 };
 
 }  // namespace donex

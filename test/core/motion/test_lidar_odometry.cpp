@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -34,6 +37,82 @@ TEST(LidarOdometry, FindsPosesAmongPlanesToTheRoundingOfTheEchoes) {
     EXPECT_LT(distanceBetween(tracked.odom_from_sensor, drive.poseAt(stamp)), 2e-5) << i;
     EXPECT_LT(rotationBetween(tracked.odom_from_sensor, drive.poseAt(stamp)), 2e-6) << i;
   }
+}
+
+/// Echoes of a turn that ends at `stamp`, and when each was measured after it: clockwise from behind.
+struct TurnEchoes {
+  TurnEchoes(const SteadyDrive& drive, double stamp, const std::vector<Eigen::Vector3d>& world) {
+    const std::vector<Eigen::Vector3f> seen = seenFrom(drive.poseAt(stamp - 0.5 * kTurn), world);
+    for (const Eigen::Vector3f& echo : seen) {
+      const double turned = 0.5 - static_cast<double>(std::atan2(echo.y(), echo.x())) / (2.0 * M_PI);
+      const double time = kTurn * (turned - 1.0);
+      const Eigen::Isometry3d then_from_middle =
+          drive.poseAt(stamp + time).inverse() * drive.poseAt(stamp - 0.5 * kTurn);
+      echoes.push_back((then_from_middle * echo.cast<double>()).cast<float>());
+      times.push_back(static_cast<float>(time));
+    }
+  }
+  static constexpr double kTurn = 0.1;  // [s]
+  std::vector<Eigen::Vector3f> echoes;
+  std::vector<float> times;
+};
+
+TEST(LidarOdometry, StraightensDistortedScans) {
+  const auto world = courtyard();
+  const SteadyDrive drive{{{8.0, 0.0, 0.0}, {0.0, 0.0, 0.5}}};
+  LidarOdometry odometry, blind;
+  Eigen::Isometry3d before, blind_before, truth_before;
+  double worst = 0.0, worst_blind = 0.0;
+  for (int i = 0; i < 12; ++i) {
+    const TurnEchoes turn(drive, 0.1 * i, world);
+    const TrackedScan tracked = odometry.locate(0.1 * i, turn.echoes, turn.times);
+    const TrackedScan blind_tracked = blind.locate(0.1 * i, turn.echoes);
+    EXPECT_NEAR(tracked.moment, 0.1 * i - 0.05, 1e-3);
+    const Eigen::Isometry3d truth = drive.poseAt(tracked.moment), step = truth_before.inverse() * truth;
+    if (i > 3) {
+      worst = std::max(worst, distanceBetween(before.inverse() * tracked.odom_from_sensor, step));
+      worst_blind =
+          std::max(worst_blind, distanceBetween(blind_before.inverse() * blind_tracked.odom_from_sensor, step));
+    }
+    before = tracked.odom_from_sensor;
+    blind_before = blind_tracked.odom_from_sensor;
+    truth_before = truth;
+  }
+  EXPECT_LT(worst, 0.005);
+  EXPECT_GT(worst_blind, 2.0 * worst) << "or times are of no use";
+}
+
+/// How far off the worst step of five scans is that begin with a bend, after a straight road [m].
+double worstStepInABend(const LidarOdometry::Options& options) {
+  const auto world = courtyard();
+  const SteadyDrive straight{{{8.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}}, bend{{{8.0, 0.0, 0.0}, {0.0, 0.0, 0.5}}};
+  LidarOdometry odometry(options);
+  Eigen::Isometry3d before, truth_before;
+  double worst = 0.0;
+  for (int i = -5; i < 6; ++i) {
+    const SteadyDrive& drive = i <= 0 ? straight : bend;  // both are at one pose at 0
+    const TurnEchoes turn(drive, 0.1 * i, world);
+    const TrackedScan tracked = odometry.locate(0.1 * i, turn.echoes, turn.times);
+    const Eigen::Isometry3d truth = drive.poseAt(tracked.moment), step = truth_before.inverse() * truth;
+    if (i > 0) worst = std::max(worst, distanceBetween(before.inverse() * tracked.odom_from_sensor, step));
+    before = tracked.odom_from_sensor;
+    truth_before = truth;
+  }
+  return worst;
+}
+
+TEST(LidarOdometry, FollowsASuddenTurnOfDistortedScans) {
+  LidarOdometry::Options options;
+  const double corrected = worstStepInABend(options);
+  options.most_corrections = 0;
+  const double uncorrected = worstStepInABend(options);
+  EXPECT_LT(corrected, 0.03);
+  EXPECT_GT(uncorrected, 1.3 * corrected);
+}
+
+TEST(LidarOdometry, WantsATimeForEachEcho) {
+  LidarOdometry odometry;
+  EXPECT_THROW(odometry.locate(0.0, std::vector<Eigen::Vector3f>(3), std::vector<float>(2)), std::invalid_argument);
 }
 
 TEST(LidarOdometry, StartsAtSpeed) {
