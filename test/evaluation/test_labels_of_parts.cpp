@@ -1,5 +1,6 @@
 // Scans that come in parts are labelled as whole scans are, and what a border cuts stays one object.
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <set>
 
@@ -45,6 +46,36 @@ double iouOf(Method method, const std::vector<TrueScan>& drive, std::size_t coun
   return score.iou();
 }
 
+/// Each scan cut by elevation into clouds of as many echoes, one 20 ms after the other.
+double iouOfBands(Method method, const std::vector<TrueScan>& drive, std::size_t count) {
+  const auto detector = makeDetector(configOf(method));
+  Score score;
+  EchoLabels labels;
+  for (std::size_t k = 0; k < drive.size(); ++k) {
+    const std::vector<Eigen::Vector3f>& echoes = drive[k].scan.echoes;
+    std::vector<float> slopes;
+    for (const Eigen::Vector3f& echo : echoes) slopes.push_back(echo.z() / echo.head<2>().norm());
+    std::vector<float> sorted = slopes;
+    std::sort(sorted.begin(), sorted.end());
+    for (std::size_t band = 0; band < count; ++band) {
+      const float first = sorted[band * sorted.size() / count];
+      const float end = band + 1 < count ? sorted[(band + 1) * sorted.size() / count] : HUGE_VALF;
+      TrueScan part = drive[k];
+      part.scan.stamp += 0.02 * static_cast<double>(band);
+      part.scan.echoes.clear();
+      part.truth.clear();
+      for (std::size_t i = 0; i < echoes.size(); ++i) {
+        if (slopes[i] < first || slopes[i] >= end) continue;
+        part.scan.echoes.push_back(echoes[i]);
+        part.truth.push_back(drive[k].truth[i]);
+      }
+      detector->process(part.scan, labels);
+      if (k >= kWarmUp) score.add(part, labels);
+    }
+  }
+  return score.iou();
+}
+
 class LabelsOfParts : public ::testing::TestWithParam<Method> {};
 
 /// On the motorway lorries fill several parts.
@@ -63,6 +94,16 @@ TEST_P(LabelsOfParts, AreThoseOfWholeScansNearly) {
     const double in_parts = iouOf(GetParam(), drive, count);
     std::cout << count << " parts: moving IoU " << in_parts << '\n';
     EXPECT_GT(in_parts, whole - 0.02) << count << " parts";
+  }
+}
+
+TEST_P(LabelsOfParts, MayBeCutByElevation) {
+  const std::vector<TrueScan> drive = simulatedDrive("street", 64, 25);
+  const double whole = iouOf(GetParam(), drive, 1);
+  for (const std::size_t count : {2U, 3U, 4U}) {
+    const double in_bands = iouOfBands(GetParam(), drive, count);
+    std::cout << "whole: moving IoU " << whole << ", " << count << " bands: " << in_bands << '\n';
+    EXPECT_GT(in_bands, whole - 0.01) << count << " bands";
   }
 }
 

@@ -26,6 +26,27 @@ ColumnSet grown(ColumnSet columns, int times) {
 
 ColumnSet shrunk(const ColumnSet& columns, int times) { return ~grown(~columns, times); }
 
+/// With gaps of twice as many columns filled, and less the column at each end.
+Turns::Directions closed(const Turns::Directions& directions, int border) {
+  Turns::Directions result = directions;
+  const auto step = [&](auto&& join) {
+    const Turns::Directions before = result;
+    for (std::size_t c = 0; c < before.size(); ++c) {
+      const Turns::Bands left = before[(c + before.size() - 1) % before.size()],
+                         right = before[(c + 1) % before.size()];
+      result[c] = join(join(before[c], left), right);
+    }
+  };
+  for (int i = 0; i < border; ++i) step([](Turns::Bands a, Turns::Bands b) { return a | b; });
+  for (int i = 0; i <= border; ++i) step([](Turns::Bands a, Turns::Bands b) { return a & b; });
+  return result;
+}
+
+/// Of a part that was cut by elevation: the outermost ones are shared with the parts above and below.
+Turns::Bands withoutEnds(Turns::Bands bands) {
+  return bands == Turns::kAllBands ? bands : bands & (bands << 1) & (bands >> 1);
+}
+
 int columnsIn(float degrees) { return static_cast<int>(std::ceil(degrees * kColumns / 360.0F)); }
 
 void sortUnique(std::vector<std::uint32_t>& numbers) {
@@ -78,14 +99,18 @@ void PartsBeside::forgetIf(Condition&& condition) {
 /// By the newest part, or of what the turn before saw by any. Parts may share a column at their border, or leave some
 /// between them.
 void PartsBeside::forgetWhatIsSeenAgain(std::uint8_t sensor, const Turns& turns) {
-  const ColumnSet seen_by_newest = shrunk(setOf(turns.newest()), 1);
-  const ColumnSet seen_by_turn = shrunk(grown(setOf(turns.lookedAt()), border_), border_ + 1);
+  const ColumnSet columns = shrunk(setOf(turns.newest()), 1);
+  const Turns::Bands bands = withoutEnds(turns.newestBands());
+  Turns::Directions seen_by_newest;
+  for (std::size_t c = 0; c < kColumns; ++c) seen_by_newest[c] = columns[c] ? bands : 0;
+  const Turns::Directions seen_by_turn = closed(turns.lookedAt(), border_);
   for (Cloud& cloud : clouds_) {
-    const ColumnSet& seen = cloud.turn == turn_ ? seen_by_newest : seen_by_turn;
-    if (cloud.sensor != sensor || (cloud.columns & seen).none()) continue;
-    const auto is_seen_again = [&](const Kept& kept) { return seen[kept.column]; };
+    const Turns::Directions& seen = cloud.turn == turn_ ? seen_by_newest : seen_by_turn;
+    if (cloud.sensor != sensor) continue;
+    const auto is_seen_again = [&](const Kept& kept) { return kept.direction.isIn(seen); };
     cloud.echoes.erase(std::remove_if(cloud.echoes.begin(), cloud.echoes.end(), is_seen_again), cloud.echoes.end());
-    cloud.columns &= ~seen;
+    cloud.columns.reset();
+    for (const Kept& kept : cloud.echoes) cloud.columns.set(kept.direction.column());
   }
   forgetIf([](const Cloud& cloud) { return cloud.echoes.empty(); });
 }
@@ -105,7 +130,7 @@ void PartsBeside::findObjectsBeside(std::uint8_t sensor) {
     if (cloud.sensor != sensor || (cloud.columns & near_).none()) continue;
     for (const Kept& kept : cloud.echoes) {
       const bool is_known = !objects_beside_.empty() && objects_beside_.back() == kept.object;
-      if (kept.object != 0 && near_[kept.column] && !is_known) objects_beside_.push_back(kept.object);
+      if (kept.object != 0 && near_[kept.direction.column()] && !is_known) objects_beside_.push_back(kept.object);
     }
   }
   sortUnique(objects_beside_);
@@ -130,10 +155,10 @@ void PartsBeside::keep(const SightPixels& pixels, std::uint8_t sensor, const Jud
     const ClusterRole role = judged.roles[i];
     const bool takes_part = role == ClusterRole::kConnects || role == ClusterRole::kFollows;
     if (!takes_part || pixels.row(i) < 0) continue;
-    const auto column = static_cast<std::uint16_t>(pixels.column(i));
-    cloud.columns.set(column);
+    const Turns::Direction direction(pixels.column(i), pixels.row(i));
+    cloud.columns.set(direction.column());
     cloud.echoes.push_back(
-        {kept_from_points * judged.points[i], judged.heights[i], 0, column, role, Place::kUnobserved});
+        {kept_from_points * judged.points[i], judged.heights[i], 0, direction, role, Place::kUnobserved});
     kept_of_[i] = &cloud.echoes.back();  // stays there: there is room for all of them
   }
   clouds_.push_back(std::move(cloud));
@@ -153,7 +178,7 @@ void PartsBeside::addBeside(std::uint8_t sensor, JudgedScan& judged) {
     cloud.is_judged = holds_any;
     if (!holds_any) continue;
     for (Kept& kept : cloud.echoes) {
-      if (near_[kept.column] || is_of_one_beside(kept.object)) add(kept, points_from_kept, judged);
+      if (near_[kept.direction.column()] || is_of_one_beside(kept.object)) add(kept, points_from_kept, judged);
     }
     if (cloud.turn != turn_) end_of_last_turn_ = judged.points.size();
   }

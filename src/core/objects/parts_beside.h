@@ -47,7 +47,7 @@ class PartsBeside {
     Eigen::Vector3f point;  ///< in the points frame of the turn's first part [m]
     float height;           ///< above the local ground [m]
     std::uint32_t object;   ///< that it belongs to; 0: none
-    std::uint16_t column;
+    Turns::Direction direction;
     ClusterRole role;
     Place place;
   };

@@ -83,6 +83,34 @@ TEST(Turns, PartsOfATurnAreOneHoweverMany) {
   }
 }
 
+/// Echoes all around from one slope to another.
+Scan band(double stamp, double from, double to) {
+  Scan scan;
+  scan.stamp = stamp;
+  for (double azimuth = 0.1; azimuth < 360.0; azimuth += 0.3) {
+    for (double slope = from; slope < to; slope += 0.01) {
+      const double angle = azimuth * M_PI / 180.0;
+      scan.echoes.push_back((20.0 * Eigen::Vector3d(std::cos(angle), std::sin(angle), slope)).cast<float>());
+    }
+  }
+  return scan;
+}
+
+TEST(Turns, BandsOfElevationAreOne) {
+  std::vector<Scan> clouds{band(0.0, -0.4, 0.1)};
+  std::vector<int> expected{1};
+  for (int k = 0; k < 9; ++k) {
+    clouds.push_back(band(0.1 + 0.02 * (k % 3) + 0.1 * (k / 3), -0.4 + 0.17 * (k % 3), -0.24 + 0.17 * (k % 3)));
+    expected.push_back(2 + k / 3);
+  }
+  EXPECT_EQ(turnsOf(clouds), expected);
+}
+
+TEST(Turns, AScanThatSeesLessThanBeforeIsWholeAllTheSame) {
+  EXPECT_EQ(turnsOf({band(0.0, -0.4, 0.4), band(0.1, -0.4, 0.0), band(0.2, -0.4, 0.0), band(0.3, -0.4, 0.4)}),
+            (std::vector<int>{1, 2, 3, 4}));
+}
+
 TEST(Turns, SectorsInAnyOrder) {
   std::vector<Scan> clouds;
   std::vector<int> expected;
