@@ -49,7 +49,7 @@ Ground::Ground(double reach, const GroundOptions& options) : options_(options), 
   ground_.resize(cells, kNone);
   unseen_.resize(cells, 0.0F);
   outwards_.reserve(cells);
-  sectors_.reserve(cells);
+  sector_of_.reserve(cells);
   for (int y = -kReach; y <= kReach; ++y) {
     for (int x = -kReach; x <= kReach; ++x) {
       around_.push_back({x, y, y * width_ + x, options_.cell * std::sqrt(static_cast<float>(x * x + y * y)), 0.0F});
@@ -57,9 +57,9 @@ Ground::Ground(double reach, const GroundOptions& options) : options_(options), 
   }
   for (int y = -(width_ / 2); y <= width_ / 2; ++y) {
     for (int x = -(width_ / 2); x <= width_ / 2; ++x) {
-      outwards_.push_back(
-          {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), findNearer(neighboursNearerTo(x, y))});
-      sectors_.push_back(sectorsOf(x, y));
+      sector_of_.push_back(sectorOf(x, y));
+      outwards_.push_back({static_cast<std::int16_t>(x), static_cast<std::int16_t>(y),
+                           findNearer(neighboursNearerTo(x, y)), sector_of_.back()});
     }
   }
   std::stable_sort(outwards_.begin(), outwards_.end(),
@@ -92,10 +92,10 @@ Ground::Nearer Ground::nearerOf(std::uint32_t mask) const {
 }
 
 /// Its place in nearer_; few differ.
-std::uint32_t Ground::findNearer(std::uint32_t mask) {
+std::uint16_t Ground::findNearer(std::uint32_t mask) {
   const auto known =
       std::find_if(nearer_.begin(), nearer_.end(), [&](const Nearer& nearer) { return nearer.mask == mask; });
-  const auto place = static_cast<std::uint32_t>(known - nearer_.begin());
+  const auto place = static_cast<std::uint16_t>(known - nearer_.begin());
   if (known == nearer_.end()) nearer_.push_back(nearerOf(mask));
   return place;
 }
@@ -173,24 +173,25 @@ Ground::Sectors Ground::sectorsHit() const {
   Sectors hit = 0;
   for (const int cell : cell_of_) {
     if (cell < 0) continue;
-    const Sectors sectors = sectors_[static_cast<std::size_t>(cell)];
-    if (sectors != kAllSectors) hit |= sectors;
+    const Sector sector = sector_of_[static_cast<std::size_t>(cell)];
+    if (sector != kInAll) hit |= Sectors{1} << sector;
   }
   return hit | hit << 1 | hit >> 1 | hit << (kBearings - 1) | hit >> (kBearings - 1);
 }
 
-Ground::Sectors Ground::sectorsOf(int x, int y) {
-  if (x * x + y * y <= kNearCells * kNearCells) return kAllSectors;
+Ground::Sector Ground::sectorOf(int x, int y) {
+  if (x * x + y * y <= kNearCells * kNearCells) return kInAll;
   const float turn = std::atan2(static_cast<float>(y), static_cast<float>(x)) / (2.0F * kPiF) + 0.5F;
-  return Sectors{1} << std::min(static_cast<int>(turn * kBearings), kBearings - 1);
+  return static_cast<Sector>(std::min(static_cast<int>(turn * kBearings), kBearings - 1));
 }
 
 /// Cells of other sectors keep the ground that they have.
 void Ground::continueOutwards(Sectors sectors) {
+  if (sectors == 0) return;
   for (const Cell& cell : outwards_) {
-    const std::size_t i = indexOf(cell.x, cell.y);
-    const bool is_asked = sectors == kAllSectors || (sectors_[i] & sectors) != 0;  // of all, none needs to be read
+    const bool is_asked = cell.sector == kInAll || (sectors >> cell.sector & 1U) != 0;
     if (!is_asked) continue;
+    const std::size_t i = indexOf(cell.x, cell.y);
     const Continuation expected = continueTo(cell);
     const float down = std::min(options_.roughness + options_.fall * expected.unseen, options_.largest_step);
     const float rise = std::min(options_.kerb + options_.rise * expected.unseen, options_.largest_step);
@@ -281,11 +282,11 @@ void Ground::heightsOf(const std::vector<Eigen::Vector3f>& echoes, std::size_t f
 
 double Ground::bytesFor(double reach, double echoes, const GroundOptions& options) {
   const double cells = std::pow(widthOf(reach, options.cell), 2);
-  return cells * (sizeof(Cell) + sizeof(Sectors) + 5 * sizeof(float)) + roomFor(echoes * sizeof(int));
+  return cells * (sizeof(Cell) + sizeof(Sector) + 5 * sizeof(float)) + roomFor(echoes * sizeof(int));
 }
 
 std::size_t Ground::memoryBytes() const {
-  return outwards_.capacity() * sizeof(Cell) + sectors_.capacity() * sizeof(Sectors) +
+  return outwards_.capacity() * sizeof(Cell) + sector_of_.capacity() * sizeof(Sector) +
          around_.capacity() * sizeof(Neighbour) + nearer_.capacity() * sizeof(Nearer) +
          cell_of_.capacity() * sizeof(int) +
          (lowest_.capacity() + before_.capacity() + ground_.capacity() + unseen_.capacity() + moved_.capacity()) *

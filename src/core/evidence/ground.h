@@ -62,11 +62,15 @@ class Ground {
  private:
   static constexpr float kNone = std::numeric_limits<float>::infinity();
 
-  /// A bit per direction, in sectors of equal azimuth; the cells around the sensor lie in all of them.
+  /// A bit per direction, in sectors of equal azimuth.
   using Sectors = std::uint64_t;
+  /// The number of one of them.
+  using Sector = std::uint8_t;
+  static constexpr Sector kInAll = 255;  ///< the cells around the sensor lie in all of them
   struct Cell {
     std::int16_t x, y;     ///< from the sensor's
-    std::uint32_t nearer;  ///< which of nearer_
+    std::uint16_t nearer;  ///< which of nearer_
+    Sector sector;
     int squaredDistance() const { return x * x + y * y; }
   };
   struct Neighbour {
@@ -88,7 +92,7 @@ class Ground {
   };
 
   static int widthOf(double reach, float cell);
-  static Sectors sectorsOf(int x, int y);
+  static Sector sectorOf(int x, int y);
   void beginMap(TurnPart part, const Eigen::Vector3d& origin, const Eigen::Vector3f& sensor);
   void moveMap(int x, int y, float up);
   void moveMap(std::vector<float>& map, int x, int y, float up);
@@ -112,7 +116,7 @@ class Ground {
   /// As Nearer::mask.
   std::uint32_t neighboursNearerTo(int x, int y) const;
   Nearer nearerOf(std::uint32_t mask) const;
-  std::uint32_t findNearer(std::uint32_t mask);
+  std::uint16_t findNearer(std::uint32_t mask);
   void climbAround();
   /// Height of the plane around the sensor, `offset` [m] from there.
   float startAt(const Eigen::Vector2f& offset) const { return start_.head<2>().dot(offset) + start_.z(); }
@@ -136,7 +140,7 @@ class Ground {
   std::vector<float> lowest_, ground_;               ///< by cell [m]
   std::vector<float> before_;                        ///< by cell: the lowest echo in the turn before [m]
   std::vector<float> moved_;                         ///< storage for moving a map
-  std::vector<Sectors> sectors_;                     ///< by cell
+  std::vector<Sector> sector_of_;                    ///< by cell
   std::vector<float> unseen_;                        ///< by cell: how far the ground is only continued [m]
   std::vector<Eigen::Vector3f> near_;                ///< lowest echoes of the cells around the sensor, from there [m]
   Eigen::Vector3f start_ = Eigen::Vector3f::Zero();  ///< slopes along x, y, and the height under the sensor [m]

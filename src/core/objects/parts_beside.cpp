@@ -16,6 +16,12 @@ ColumnSet setOf(const Turns::Columns& columns) {
   return set;
 }
 
+ColumnSet columnsIn(const Turns::Directions& directions) {
+  ColumnSet set;
+  for (std::size_t c = 0; c < directions.size(); ++c) set[c] = directions[c] != 0;
+  return set;
+}
+
 /// With those next to them, to both sides, so many times.
 ColumnSet grown(ColumnSet columns, int times) {
   for (int i = 0; i < times; ++i) {
@@ -47,7 +53,7 @@ Turns::Bands withoutEnds(Turns::Bands bands) {
   return bands == Turns::kAllBands ? bands : bands & (bands << 1) & (bands >> 1);
 }
 
-int columnsIn(float degrees) { return static_cast<int>(std::ceil(degrees * kColumns / 360.0F)); }
+int widthOf(float degrees) { return static_cast<int>(std::ceil(degrees * kColumns / 360.0F)); }
 
 void sortUnique(std::vector<std::uint32_t>& numbers) {
   std::sort(numbers.begin(), numbers.end());
@@ -57,7 +63,7 @@ void sortUnique(std::vector<std::uint32_t>& numbers) {
 }  // namespace
 
 PartsBeside::PartsBeside(const PartsBesideOptions& options)
-    : reach_(columnsIn(options.reach)), border_(columnsIn(options.border)) {}
+    : reach_(widthOf(options.reach)), border_(widthOf(options.border)) {}
 
 void PartsBeside::join(TurnPart part, const Scan& scan, const SightPixels& pixels, const Turns& turns,
                        JudgedScan& judged) {
@@ -104,9 +110,11 @@ void PartsBeside::forgetWhatIsSeenAgain(std::uint8_t sensor, const Turns& turns)
   Turns::Directions seen_by_newest;
   for (std::size_t c = 0; c < kColumns; ++c) seen_by_newest[c] = columns[c] ? bands : 0;
   const Turns::Directions seen_by_turn = closed(turns.lookedAt(), border_);
+  const ColumnSet columns_of_turn = columnsIn(seen_by_turn);
   for (Cloud& cloud : clouds_) {
-    const Turns::Directions& seen = cloud.turn == turn_ ? seen_by_newest : seen_by_turn;
-    if (cloud.sensor != sensor) continue;
+    const bool is_of_turn = cloud.turn == turn_;
+    if (cloud.sensor != sensor || (cloud.columns & (is_of_turn ? columns : columns_of_turn)).none()) continue;
+    const Turns::Directions& seen = is_of_turn ? seen_by_newest : seen_by_turn;
     const auto is_seen_again = [&](const Kept& kept) { return kept.direction.isIn(seen); };
     cloud.echoes.erase(std::remove_if(cloud.echoes.begin(), cloud.echoes.end(), is_seen_again), cloud.echoes.end());
     cloud.columns.reset();
@@ -126,11 +134,14 @@ std::uint8_t PartsBeside::sensorOf(const Scan& scan) {
 
 void PartsBeside::findObjectsBeside(std::uint8_t sensor) {
   objects_beside_.clear();
+  const ColumnSet& near = near_;
   for (const Cloud& cloud : clouds_) {
-    if (cloud.sensor != sensor || (cloud.columns & near_).none()) continue;
+    if (cloud.sensor != sensor || cloud.objects.empty() || (cloud.columns & near).none()) continue;
+    std::uint32_t known = 0;
     for (const Kept& kept : cloud.echoes) {
-      const bool is_known = !objects_beside_.empty() && objects_beside_.back() == kept.object;
-      if (kept.object != 0 && near_[kept.direction.column()] && !is_known) objects_beside_.push_back(kept.object);
+      if (kept.object == known || kept.object == 0 || !near[kept.direction.column()]) continue;
+      known = kept.object;
+      objects_beside_.push_back(known);
     }
   }
   sortUnique(objects_beside_);
@@ -165,32 +176,47 @@ void PartsBeside::keep(const SightPixels& pixels, std::uint8_t sensor, const Jud
 }
 
 void PartsBeside::addBeside(std::uint8_t sensor, JudgedScan& judged) {
-  const Eigen::Isometry3f points_from_kept = (judged.odom_from_points.inverse() * odom_from_kept_).cast<float>();
+  // Echoes of an object follow one another.
+  std::uint32_t asked = 0;
+  bool is_beside = false;
   const auto is_of_one_beside = [&](std::uint32_t object) {
-    return object != 0 && std::binary_search(objects_beside_.begin(), objects_beside_.end(), object);
+    if (object == asked) return is_beside;
+    asked = object;
+    return is_beside = object != 0 && std::binary_search(objects_beside_.begin(), objects_beside_.end(), object);
   };
+  const ColumnSet& near = near_;
   end_of_last_turn_ = judged.own();
   for (std::size_t i = 0; i + 1 < clouds_.size(); ++i) {
     Cloud& cloud = clouds_[i];
-    const bool may_be_near = (cloud.columns & near_).any();
-    const bool holds_any = cloud.sensor == sensor &&
-                           (may_be_near || std::any_of(cloud.objects.begin(), cloud.objects.end(), is_of_one_beside));
-    cloud.is_judged = holds_any;
-    if (!holds_any) continue;
+    const bool is_same = cloud.sensor == sensor, may_be_near = is_same && (cloud.columns & near_).any();
+    const bool holds_object = is_same && std::any_of(cloud.objects.begin(), cloud.objects.end(), is_of_one_beside);
+    cloud.is_judged = may_be_near || holds_object;
+    if (!cloud.is_judged) continue;
     for (Kept& kept : cloud.echoes) {
-      if (near_[kept.direction.column()] || is_of_one_beside(kept.object)) add(kept, points_from_kept, judged);
+      const bool is_near = near[kept.direction.column()];
+      if (is_near || (holds_object && is_of_one_beside(kept.object))) kept_of_.push_back(&kept);
     }
-    if (cloud.turn != turn_) end_of_last_turn_ = judged.points.size();
+    if (cloud.turn != turn_) end_of_last_turn_ = kept_of_.size();
   }
+  addKept(judged);
 }
 
-void PartsBeside::add(Kept& kept, const Eigen::Isometry3f& points_from_kept, JudgedScan& judged) {
-  judged.points.push_back(points_from_kept * kept.point);
-  judged.heights.push_back(kept.height);
-  judged.roles.push_back(kept.role);
-  judged.places.push_back(kept.place);
-  ++judged.beside;
-  kept_of_.push_back(&kept);
+/// The entries of what lies beside, all at once: one by one, five vectors would be asked for room for each.
+void PartsBeside::addKept(JudgedScan& judged) {
+  const Eigen::Isometry3f points_from_kept = (judged.odom_from_points.inverse() * odom_from_kept_).cast<float>();
+  const std::size_t own = judged.own(), all = kept_of_.size();
+  judged.points.resize(all);
+  judged.heights.resize(all);
+  judged.roles.resize(all);
+  judged.places.resize(all);
+  judged.beside = all - own;
+  for (std::size_t i = own; i < all; ++i) {
+    const Kept& kept = *kept_of_[i];
+    judged.points[i] = points_from_kept * kept.point;
+    judged.heights[i] = kept.height;
+    judged.roles[i] = kept.role;
+    judged.places[i] = kept.place;
+  }
 }
 
 void PartsBeside::relate(const JudgedScan& judged, Segments& segments) {

@@ -72,7 +72,7 @@ class PartsBeside {
   std::uint8_t sensorOf(const Scan& scan);
   void findObjectsBeside(std::uint8_t sensor);
   void addBeside(std::uint8_t sensor, JudgedScan& judged);
-  void add(Kept& kept, const Eigen::Isometry3f& points_from_kept, JudgedScan& judged);
+  void addKept(JudgedScan& judged);
   void keep(const SightPixels& pixels, std::uint8_t sensor, const JudgedScan& judged);
   static void listObjects(Cloud& cloud);
   std::uint32_t objectOf(const Segment& segment, std::size_t own);
