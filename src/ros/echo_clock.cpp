@@ -17,16 +17,29 @@ std::vector<TimeReading> knownReadings() {
           {-1.0, 0.0, "backwards from the stamp"}};
 }
 
-/// Where a spinning sensor's clouds carry no times: what its drivers stamp. Converters that write ring by ring, or that
-/// project into images, begin where they like, often across from where the sensor does.
-std::vector<TimeReading> readingsByAzimuth() {
+/// Where a spinning sensor's clouds carry no times: what its drivers stamp.
+std::vector<TimeReading> readingsByFirings() {
   return {{0.0, 0.0, "none"},
           {1.0, -1.0, "the stamp is the scan's end"},
           {1.0, 0.0, "the stamp is the scan's begin"},
-          {1.0, -0.5, "the stamp is the scan's middle"},
-          {1.0, -1.0, "half a turn later, the stamp is the scan's end", 0.5},
-          {1.0, 0.0, "half a turn later, the stamp is the scan's begin", 0.5},
-          {1.0, -0.5, "half a turn later, the stamp is the scan's middle", 0.5}};
+          {1.0, -0.5, "the stamp is the scan's middle"}};
+}
+
+/// Where clouds begin elsewhere than the sensor did, it is often across from there.
+std::vector<TimeReading> readingsByRows() {
+  std::vector<TimeReading> readings = readingsByFirings();
+  readings.push_back({1.0, -1.0, "half a turn later, the stamp is the scan's end", 0.5});
+  readings.push_back({1.0, 0.0, "half a turn later, the stamp is the scan's begin", 0.5});
+  readings.push_back({1.0, -0.5, "half a turn later, the stamp is the scan's middle", 0.5});
+  return readings;
+}
+
+/// On straight roads these readings hardly differ.
+DeskewChoice::Options optionsByAzimuth() {
+  DeskewChoice::Options options;
+  options.most_lost = 0.2;
+  options.lost = 0.01;
+  return options;
 }
 
 /// So many clouds tell how far apart clouds are.
@@ -51,7 +64,8 @@ EchoClock::EchoClock(const Config& config)
     : motion_(config.motion),
       wanted_(config.cloud.time_field),
       choice_(knownReadings()),
-      choice_by_azimuth_(readingsByAzimuth()) {}
+      choice_by_firings_(readingsByFirings(), optionsByAzimuth()),
+      choice_by_rows_(readingsByRows(), optionsByAzimuth()) {}
 
 /// Whether echoes are to be de-skewed at all.
 bool EchoClock::isAsked() const { return motion_.deskew && motion_.source != OdometrySource::kNone; }
@@ -101,7 +115,7 @@ bool EchoClock::lacksTimes(const CloudLayout& layout, const CloudLayout& used, c
 void EchoClock::tellByAzimuth(double stamp, const CloudLayout& layout, const std::vector<Eigen::Vector3f>& echoes,
                               EchoTimes& times) {
   times.clear();
-  const bool is_idle = choice_by_azimuth_.reading().undoesNothing() && !choice_by_azimuth_.wants(stamp);
+  const bool is_idle = byAzimuth().reading().undoesNothing() && !byAzimuth().wants(stamp);
   const auto interval = unit_.interval();
   if (is_idle || !interval) return;
   has_order_ = azimuth_times_.read(stamp, echoes, layout.width, *interval, times.after_stamp);
@@ -137,7 +151,7 @@ std::string EchoClock::untoldLack() {
 EchoClock::State EchoClock::stateOf(const CloudLayout& layout, const CloudLayout& used, const EchoTimes& times) const {
   if (motion_.source == OdometrySource::kNone) return State::kAtRest;
   if (!motion_.deskew) return State::kOff;
-  const bool is_by_azimuth = is_by_azimuth_ && !times.empty() && !choice_by_azimuth_.reading().undoesNothing();
+  const bool is_by_azimuth = is_by_azimuth_ && !times.empty() && !byAzimuth().reading().undoesNothing();
   if (is_by_azimuth) return State::kAzimuth;
   if (!layout.time) return wanted_.empty() ? State::kNoField : State::kTold;
   if (!used.time) return not_understood_ < kPatience ? State::kNotYet : State::kNotUnderstood;
@@ -188,15 +202,15 @@ std::string EchoClock::azimuth() const {
   const Spin& spin = azimuth_times_.spin();
   std::ostringstream text;
   text << "azimuth, " << (spin.isClockwise() ? "" : "counter-") << "clockwise from "
-       << std::lround(360.0F * spin.start()) << " degrees, " << choice_by_azimuth_.reading().meaning;
+       << std::lround(360.0F * spin.start()) << " degrees, " << byAzimuth().reading().meaning;
   return text.str();
 }
 
 std::string EchoClock::azimuthLack() const {
   if (!unit_.interval()) return "whether azimuth tells is not known yet";
   if (!has_order_) return "the order of the echoes does not tell how the sensor turned";
-  return choice_by_azimuth_.pairs() < kPairs ? "whether times by azimuth fit is looked at while the vehicle moves"
-                                             : "with times by azimuth the scans do not fit one another better";
+  return byAzimuth().pairs() < kPairs ? "whether times by azimuth fit is looked at while the vehicle moves"
+                                      : "with times by azimuth the scans do not fit one another better";
 }
 
 EchoClock& EchoClocks::of(const std::string& frame) {

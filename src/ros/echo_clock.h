@@ -51,7 +51,8 @@ class EchoClock {
   /// Poses cannot be compared with those before.
   void reset() {
     choice_.reset();
-    choice_by_azimuth_.reset();
+    choice_by_firings_.reset();
+    choice_by_rows_.reset();
   }
 
  private:
@@ -73,7 +74,11 @@ class EchoClock {
   bool lacksTimes(const CloudLayout& layout, const CloudLayout& used, const EchoTimes& times) const;
   void tellByAzimuth(double stamp, const CloudLayout& layout, const std::vector<Eigen::Vector3f>& echoes,
                      EchoTimes& times);
-  DeskewChoice& choice() { return is_by_azimuth_ ? choice_by_azimuth_ : choice_; }
+  DeskewChoice& choice() { return is_by_azimuth_ ? byAzimuth() : choice_; }
+  DeskewChoice& byAzimuth() { return azimuth_times_.spin().isByFirings() ? choice_by_firings_ : choice_by_rows_; }
+  const DeskewChoice& byAzimuth() const {
+    return azimuth_times_.spin().isByFirings() ? choice_by_firings_ : choice_by_rows_;
+  }
   State stateOf(const CloudLayout& layout, const CloudLayout& used, const EchoTimes& times) const;
   std::string describe(State state, const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout,
                        const EchoTimes& times) const;
@@ -83,7 +88,7 @@ class EchoClock {
   MotionConfig motion_;
   std::string wanted_;  // time_field
   TimeUnit unit_;
-  DeskewChoice choice_, choice_by_azimuth_;
+  DeskewChoice choice_, choice_by_firings_, choice_by_rows_;
   AzimuthTimes azimuth_times_;
   bool has_order_ = false;  // of the cloud that was looked at last
   // The cloud that was read last:

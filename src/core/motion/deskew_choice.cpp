@@ -54,7 +54,7 @@ void DeskewChoice::take(double stamp, const std::vector<Eigen::Vector3f>& echoes
     sample.echoes.push_back(echoes[i]);
     sample.times.push_back(times[i]);
   }
-  if (sample.times.empty()) return;
+  if (sample.times.size() < options_.least_echoes) return;
   const auto ends = std::minmax_element(sample.times.begin(), sample.times.end());
   sample.first = *ends.first;
   sample.last = *ends.second;
@@ -143,7 +143,7 @@ std::vector<double> DeskewChoice::fits() const {
 bool DeskewChoice::fitsBetter(std::size_t reading, std::size_t other) const {
   const std::vector<double> means = fits();
   const auto lost = std::count_if(fits_.begin(), fits_.end(), [&](const std::vector<double>& fits) {
-    return fits[reading] < (1.0 - options_.lost) * fits[other];
+    return fits[reading] <= (1.0 - options_.lost) * fits[other];
   });
   return means[reading] > (1.0 + options_.least_gain) * means[other] &&
          static_cast<double>(lost) <= options_.most_lost * static_cast<double>(fits_.size());

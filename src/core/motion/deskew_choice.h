@@ -38,6 +38,7 @@ class DeskewChoice {
  public:
   struct Options {
     std::size_t sampled_echoes = 8000;  ///< of a scan
+    std::size_t least_echoes = 3000;    ///< of a scan; fewer fit by chance
     float nearest = 2.0F;               ///< echoes nearer than this may lie on the vehicle itself [m]
     float farthest = 60.0F;             ///< echoes farther away lie too thinly to be compared [m]
     double apart = 0.25;                ///< from one scan of a pair to the other [s]
@@ -49,8 +50,8 @@ class DeskewChoice {
     double kernel = 0.15;               ///< an echo so far from a surface weighs a quarter [m]
     std::size_t window = 10;            ///< newest pairs that count
     std::size_t least_pairs = 6;        ///< of these, before another reading is believed
-    double most_lost = 0.2;             ///< of the pairs, in which it may fit worse,
-    double lost = 0.01;                 ///< by more than this share: on straight roads readings hardly differ
+    double most_lost = 0.1;             ///< of the pairs, in which it may fit worse,
+    double lost = 0.0;                  ///< by more than this share
     double least_gain = 0.02;           ///< by which another reading has to fit better, on average
     double lost_after = 2.0;            ///< a pair whose scans the track does not reach by then is given up [s]
   };

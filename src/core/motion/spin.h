@@ -32,6 +32,9 @@ class Spin {
   /// its order tells nothing. Echoes in the sensor's frame; not finite where there are none.
   bool look(const std::vector<Eigen::Vector3f>& echoes, std::size_t columns);
 
+  /// Whether the cloud has its echoes in the order they were measured in: converters that write ring by ring, or that
+  /// project into images, begin where they like.
+  bool isByFirings() const { return order_ == Order::kFirings; }
   bool isClockwise() const { return sign_ < 0.0F; }
   /// Where the cloud begins: azimuth, counter-clockwise from straight ahead [turns], -0.5 to 0.5.
   float start() const { return start_; }

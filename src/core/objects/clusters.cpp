@@ -9,6 +9,7 @@
 #include "core/grid/selection.h"
 
 namespace donex {
+
 Clusters::Clusters(double reach, const Options& options)
     : options_(options),
       per_cell_(static_cast<float>(1.0 / options.cell)),

@@ -167,7 +167,7 @@ void PartsBeside::keep(const SightPixels& pixels, std::uint8_t sensor, const Jud
     const bool takes_part = role == ClusterRole::kConnects || role == ClusterRole::kFollows;
     if (!takes_part || pixels.row(i) < 0) continue;
     const Turns::Direction direction(pixels.column(i), pixels.row(i));
-    cloud.columns.set(direction.column());
+    cloud.columns[direction.column()] = true;
     cloud.echoes.push_back(
         {kept_from_points * judged.points[i], judged.heights[i], 0, direction, role, Place::kUnobserved});
     kept_of_[i] = &cloud.echoes.back();  // stays there: there is room for all of them
@@ -232,23 +232,35 @@ void PartsBeside::relate(const JudgedScan& judged, Segments& segments) {
 /// The one that most of its echoes beside belong to.
 std::uint32_t PartsBeside::objectOf(const Segment& segment, std::size_t own) {
   counts_.clear();
+  std::size_t newest = 0;  // of counts_; echoes of an object follow one another
   for (const std::uint32_t echo : segment.echoes) {
     const std::uint32_t object = echo < own ? 0 : kept_of_[echo]->object;
     if (object == 0) continue;
-    const auto known =
-        std::find_if(counts_.begin(), counts_.end(), [&](const Count& count) { return count.object == object; });
-    known == counts_.end() ? counts_.push_back({object, 1}) : void(++known->echoes);
+    const bool is_same = newest < counts_.size() && counts_[newest].object == object;
+    if (!is_same) newest = countOf(object);
+    ++counts_[newest].echoes;
   }
   const auto most = std::max_element(counts_.begin(), counts_.end(),
                                      [](const Count& a, const Count& b) { return a.echoes < b.echoes; });
   return most == counts_.end() ? 0 : most->object;
 }
 
+/// Its place in counts_.
+std::size_t PartsBeside::countOf(std::uint32_t object) {
+  const auto known =
+      std::find_if(counts_.begin(), counts_.end(), [&](const Count& count) { return count.object == object; });
+  const auto place = static_cast<std::size_t>(known - counts_.begin());
+  if (known == counts_.end()) counts_.push_back({object, 0});
+  return place;
+}
+
 void PartsBeside::listObjects(Cloud& cloud) {
   cloud.objects.clear();
+  std::uint32_t known = 0;
   for (const Kept& kept : cloud.echoes) {
-    const bool is_known = !cloud.objects.empty() && cloud.objects.back() == kept.object;
-    if (kept.object != 0 && !is_known) cloud.objects.push_back(kept.object);
+    if (kept.object == known || kept.object == 0) continue;
+    known = kept.object;
+    cloud.objects.push_back(known);
   }
   sortUnique(cloud.objects);
 }

@@ -76,6 +76,7 @@ class PartsBeside {
   void keep(const SightPixels& pixels, std::uint8_t sensor, const JudgedScan& judged);
   static void listObjects(Cloud& cloud);
   std::uint32_t objectOf(const Segment& segment, std::size_t own);
+  std::size_t countOf(std::uint32_t object);
 
   int reach_, border_;  ///< columns
   std::uint32_t turn_ = 0;
