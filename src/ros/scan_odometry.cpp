@@ -26,7 +26,8 @@ const TrackedScan& ScanOdometry::locate(double stamp, const std::vector<Eigen::V
   sample.odom_from_base = base_from_sensor * tracked.odom_from_sensor * base_from_sensor.inverse();
   track_.add(sample);
   // In a turn the pose at the stamp is another one than in the middle of the scan.
-  odom_from_base_ = track_.poseAt(stamp) ? *track_.poseAt(stamp) : sample.odom_from_base;
+  const auto at_stamp = track_.poseAt(stamp);
+  odom_from_base_ = at_stamp ? *at_stamp : sample.odom_from_base;
   return tracked;
 }
 

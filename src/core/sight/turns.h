@@ -30,9 +30,9 @@ class Turns {
   /// Whether two mountings are one sensor's.
   static bool areOne(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b);
   using Columns = std::array<std::uint8_t, SightPixels::kColumns>;  ///< 1 where they are looked at
-  static constexpr int kBands = 64;
-  using Bands = std::uint64_t;                                  ///< of elevation, a bit each from the lowest on
-  using Directions = std::array<Bands, SightPixels::kColumns>;  ///< by column
+  static constexpr int kBands = 64;                                 ///< of elevation, over what the rows reach
+  using Bands = std::uint64_t;                                      ///< of elevation, a bit each from the lowest on
+  using Directions = std::array<Bands, SightPixels::kColumns>;      ///< by column
   static constexpr Bands kAllBands = ~Bands{0};
   static int bandOf(int row) { return row * kBands / SightPixels::kRows; }
   /// A column and a band.
