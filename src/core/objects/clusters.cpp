@@ -7,8 +7,48 @@
 
 #include "core/grid/line_of_sight.h"
 #include "core/grid/selection.h"
+#include "core/grid/simd.h"
 
 namespace donex {
+namespace {
+
+/// A square of cells, seen from its middle.
+struct CellsAround {
+  Eigen::Vector3f sensor;  ///< [m]
+  float per_cell;          ///< [1/m]
+  int width;               ///< cells
+  float height;            ///< [m]
+};
+
+/// Whether any of them has a role: often few do, close to one another.
+bool hasAny(const ClusterRole* roles, std::size_t count) {
+  static_assert(static_cast<int>(ClusterRole::kNone) == 0);
+  int any = 0;
+  for (std::size_t i = 0; i < count; ++i) any |= static_cast<int>(roles[i]);
+  return any != 0;
+}
+
+/// The number of the column of cells each echo lies in, or kNone where it takes no part, and its layer there. Echoes
+/// may be NaN.
+DONEX_WIDE_LOOPS void placeSome(const CellsAround& around, const float* echoes, const float* heights, std::size_t count,
+                                int* columns, int* layers) {
+  static_assert(Clusters::kNone == -1);  // all bits
+  const float per_cell = around.per_cell, sensor_x = around.sensor.x(), sensor_y = around.sensor.y();
+  const int width = around.width, middle = width / 2;
+  const auto beyond = static_cast<float>(width);
+  for (std::size_t i = 0; i < count; ++i) {
+    const int x = floorToInt(clampedTo(-beyond, beyond, (echoes[3 * i] - sensor_x) * per_cell)) + middle;
+    const int y = floorToInt(clampedTo(-beyond, beyond, (echoes[3 * i + 1] - sensor_y) * per_cell)) + middle;
+    const float height = clampedTo(-1.0F, around.height + 1.0F, heights[i]);
+    const int in_height = static_cast<int>(height >= 0.0F) & static_cast<int>(height <= around.height);
+    const int in_square =
+        static_cast<int>(x >= 0) & static_cast<int>(x < width) & static_cast<int>(y >= 0) & static_cast<int>(y < width);
+    columns[i] = (y * width + x) | ((in_height & in_square) - 1);
+    layers[i] = static_cast<int>(height * per_cell);
+  }
+}
+
+}  // namespace
 
 Clusters::Clusters(double reach, const Options& options)
     : options_(options),
@@ -19,13 +59,17 @@ Clusters::Clusters(double reach, const Options& options)
 
 int Clusters::widthOf(double reach, double cell) { return 2 * static_cast<int>(std::ceil(reach / cell)) + 1; }
 
-int Clusters::makeCell(int x_y, int z) {
-  int& column = column_at_[static_cast<std::size_t>(x_y)];
-  if (column == kNone) {
-    column = static_cast<int>(columns_.size());
-    columns_.push_back({x_y % width_, x_y / width_});
-    cell_in_column_.resize(cell_in_column_.size() + static_cast<std::size_t>(layers_), kNone);
-  }
+int Clusters::makeColumn(int x_y) {
+  const auto column = static_cast<int>(columns_.size());
+  column_at_[static_cast<std::size_t>(x_y)] = column;
+  columns_.push_back({x_y % width_, x_y / width_});
+  cell_in_column_.resize(cell_in_column_.size() + static_cast<std::size_t>(layers_), kNone);
+  return column;
+}
+
+inline int Clusters::makeCell(int x_y, int z) {
+  int column = column_at_[static_cast<std::size_t>(x_y)];
+  if (column == kNone) column = makeColumn(x_y);
   int& cell = cell_in_column_[static_cast<std::size_t>(column) * static_cast<std::size_t>(layers_) +
                               static_cast<std::size_t>(z)];
   if (cell == kNone) {
@@ -57,15 +101,6 @@ void Clusters::connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::V
   for (const Column& column : columns_) column_at_[columnOf(column.x, column.y)] = kNone;
 }
 
-/// Where the column of a place is, or kNone where it takes no part.
-inline int Clusters::columnAt(const Eigen::Vector3f& from_sensor, float height) const {
-  const bool in_height = height >= 0.0F && height <= static_cast<float>(options_.height);
-  const int x = floorToInt(from_sensor.x() * per_cell_) + width_ / 2;
-  const int y = floorToInt(from_sensor.y() * per_cell_) + width_ / 2;
-  const bool in_square = x >= 0 && x < width_ && y >= 0 && y < width_;
-  return in_height && in_square ? y * width_ + x : int{kNone};
-}
-
 /// Cells are numbered in the order of their first echoes.
 void Clusters::fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
                     const std::vector<float>& heights, const std::vector<ClusterRole>& roles) {
@@ -73,23 +108,40 @@ void Clusters::fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vect
   columns_.clear();
   cell_in_column_.clear();
   members_.clear();
+  for (std::size_t first = 0; first < echoes.size(); first += kSelectionBlock) {
+    const std::size_t last = std::min(first + kSelectionBlock, echoes.size());
+    if (hasAny(&roles[first], last - first)) fillSome(sensor, echoes, heights, roles, first, last);
+  }
+}
+
+void Clusters::fillSome(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
+                        const std::vector<float>& heights, const std::vector<ClusterRole>& roles, std::size_t begin,
+                        std::size_t end) {
   const auto takes_part = [&](std::size_t i) {
     return roles[i] == ClusterRole::kConnects || roles[i] == ClusterRole::kFollows;
   };
-  forEachSelection(0, echoes.size(), takes_part, [&](const std::uint32_t* chosen, std::size_t count) {
-    std::array<int, kSelectionBlock> columns;
+  forEachSelection(begin, end, takes_part, [&](const std::uint32_t* chosen, std::size_t count) {
+    if (count == 0) return;
+    const std::size_t first = chosen[0], last = chosen[count - 1];
+    std::array<int, kSelectionBlock> columns, layers;  // from the first one on
+    placeSome({sensor, per_cell_, width_, static_cast<float>(options_.height)}, echoes[first].data(), &heights[first],
+              last + 1 - first, columns.data(), layers.data());
     for (std::size_t k = 0; k < count; ++k) {
-      columns[k] = columnAt(echoes[chosen[k]] - sensor, heights[chosen[k]]);
-      __builtin_prefetch(&column_at_[static_cast<std::size_t>(std::max(columns[k], 0))]);
+      __builtin_prefetch(&column_at_[static_cast<std::size_t>(std::max(columns[chosen[k] - first], 0))]);
     }
+    const std::size_t before = members_.size();
+    members_.resize(before + count);
+    Member* member = members_.data() + before;
     for (std::size_t k = 0; k < count; ++k) {
-      if (columns[k] == kNone) continue;
       const std::uint32_t echo = chosen[k];
+      const int column = columns[echo - first];
+      if (column == kNone) continue;
       const bool follows = roles[echo] == ClusterRole::kFollows;
-      Member& member = members_.emplace_back();  // filled in its place: a copy would wait for both of its halves
-      member.echo = echo;
-      member.cluster = follows ? ~columns[k] : makeCell(columns[k], static_cast<int>(heights[echo] * per_cell_));
+      member->echo = echo;
+      member->cluster = follows ? ~column : makeCell(column, layers[echo - first]);
+      ++member;
     }
+    members_.resize(static_cast<std::size_t>(member - members_.data()));
   });
 }
 
@@ -164,17 +216,23 @@ void Clusters::number(std::size_t echoes) {
   echoes_in_.clear();
   of_.assign(echoes, kNone);
   std::size_t stay = 0;
-  for (const auto& [echo, at] : members_) {
-    const int cell = at < 0 ? cellAbove(~at) : at;
+  // As members, all of these would be read again after each number that is written.
+  Member* members = members_.data();
+  const int* parents = parents_.data();
+  int *numbers = number_of_root_.data(), *of = of_.data();
+  for (std::size_t i = 0, count_of_members = members_.size(); i < count_of_members; ++i) {
+    const std::uint32_t echo = members[i].echo;
+    const int at = members[i].cluster, cell = at < 0 ? cellAbove(~at) : at;
     if (cell == kNone) continue;
-    int& number = number_of_root_[static_cast<std::size_t>(parents_[static_cast<std::size_t>(cell)])];
+    int number = numbers[parents[cell]];
     if (number == kNone) {
-      number = count();
+      number = numbers[parents[cell]] = count();
       echoes_in_.push_back(0);
     }
     ++echoes_in_[static_cast<std::size_t>(number)];
-    of_[echo] = number;
-    members_[stay++] = {echo, number};
+    of[echo] = number;
+    members[stay].echo = echo;
+    members[stay++].cluster = number;
   }
   members_.resize(stay);
 }

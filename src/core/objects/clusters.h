@@ -64,7 +64,7 @@ class Clusters {
     return cell_in_column_.data() + static_cast<std::ptrdiff_t>(column) * layers_;
   }
   static int widthOf(double reach, double cell);
-  int columnAt(const Eigen::Vector3f& from_sensor, float height) const;
+  int makeColumn(int x_y);
   int makeCell(int x_y, int z);
   int cellAbove(int x_y) const;
   /// Others may join cells at the same time: what is read is old at worst, and a parent's parent serves as well.
@@ -73,6 +73,9 @@ class Clusters {
   int unite(int a, int b);
   void fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
             const std::vector<float>& heights, const std::vector<ClusterRole>& roles);
+  void fillSome(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
+                const std::vector<float>& heights, const std::vector<ClusterRole>& roles, std::size_t begin,
+                std::size_t end);
   void join(int column);
   void joinRun(const Column& here, const int* cells, int first_z, int last_z);
   void number(std::size_t echoes);
