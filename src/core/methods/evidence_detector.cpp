@@ -70,6 +70,7 @@ class EvidenceDetector : public Detector {
         own_body_(config.self),
         ground_(reachOf(config.region)),
         segmenter_(reachOf(config.region), config.objects),
+        parts_(config.objects.cell),
         tracker_(config.objects),
         trimmer_(reachOf(config.region), config.objects) {}
 
@@ -84,7 +85,7 @@ class EvidenceDetector : public Detector {
     heightsAboveGround(part);
     loose_echoes_.loosen(part, scan.stamp, sights_.newest(), judged_.roles);
     judged_.places.assign(judged_.points.size(), Place::kUnobserved);
-    if (config_.objects.enabled) parts_.join(part, scan, sights_.newest(), sights_.turns(), judged_);
+    if (config_.objects.enabled) parts_.join(part, scan, sights_.turns(), judged_);
     const SightView before = sights_.seenBefore(judged_.odom_from_points);
     workers_.both([&] { judgePlaces(before); }, [&] { learnAndConnect(part, scan); });
     sights_.keep();
@@ -95,7 +96,7 @@ class EvidenceDetector : public Detector {
       parts_.relate(judged_, segments_);
       tracker_.update(judged_, segments_, predictions_, now, verdicts_, workers_);
       trimmer_.trim(judged_, segments_, verdicts_, proofs_, workers_);
-      parts_.settle(segments_, verdicts_, judged_);
+      parts_.settle(sights_.newest(), segments_, verdicts_, judged_);
       proofs_.resize(judged_.points.size());
     } else {
       proveByPlaces();

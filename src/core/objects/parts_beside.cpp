@@ -2,11 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+
+#include "core/grid/selection.h"
+#include "core/pi.h"
 
 namespace donex {
 namespace {
 
 constexpr int kColumns = SightPixels::kColumns;
+constexpr float kColumnsPerRadian = static_cast<float>(kColumns) / (2.0F * kPiF);
 
 using ColumnSet = std::bitset<kColumns>;
 
@@ -55,38 +60,33 @@ Turns::Bands withoutEnds(Turns::Bands bands) {
 
 int widthOf(float degrees) { return static_cast<int>(std::ceil(degrees * kColumns / 360.0F)); }
 
-void sortUnique(std::vector<std::uint32_t>& numbers) {
-  std::sort(numbers.begin(), numbers.end());
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-}
-
 }  // namespace
 
-PartsBeside::PartsBeside(const PartsBesideOptions& options)
-    : reach_(widthOf(options.reach)), border_(widthOf(options.border)) {}
+PartsBeside::PartsBeside(double cell, const PartsBesideOptions& options)
+    : reach_(widthOf(options.reach)),
+      border_(widthOf(options.border)),
+      touch_(options.touch * static_cast<float>(cell) * kColumnsPerRadian),
+      beyond_touch_(options.touch_angle * kColumnsPerRadian + 1.0F),
+      farthest_(static_cast<float>(reach_)),
+      objects_(1) {}
 
-void PartsBeside::join(TurnPart part, const Scan& scan, const SightPixels& pixels, const Turns& turns,
-                       JudgedScan& judged) {
-  if (!judged.continues_turn) beginTurn(part, judged);
+void PartsBeside::join(TurnPart part, const Scan& scan, const Turns& turns, JudgedScan& judged) {
+  if (!judged.continues_turn) beginTurn(part);
   if (!is_in_parts_) return;
-  const std::uint8_t sensor = sensorOf(scan);
-  near_ = grown(setOf(turns.newest()), reach_);
-  forgetWhatIsSeenAgain(sensor, turns);
-  findObjectsBeside(sensor);
-  keep(pixels, sensor, judged);
-  addBeside(sensor, judged);
+  sensor_ = sensorOf(scan);
+  forgetWhatIsSeenAgain(turns);
+  measureDistances(turns);
+  findObjectsBeside();
+  chooseBeside();
+  addKept(judged);
 }
 
-void PartsBeside::beginTurn(TurnPart part, const JudgedScan& judged) {
+void PartsBeside::beginTurn(TurnPart part) {
   is_in_parts_ = part != TurnPart::kWhole;
   ++turn_;
   forgetIf([&](const Cloud& cloud) { return !is_in_parts_ || cloud.turn + 1 != turn_; });
+  forgetObjects();
   if (clouds_.empty()) mountings_.clear();
-  const Eigen::Isometry3f moved = (judged.odom_from_points.inverse() * odom_from_kept_).cast<float>();
-  for (Cloud& cloud : clouds_) {
-    for (Kept& kept : cloud.echoes) kept.point = moved * kept.point;
-  }
-  odom_from_kept_ = judged.odom_from_points;
 }
 
 template <class Condition>
@@ -102,9 +102,20 @@ void PartsBeside::forgetIf(Condition&& condition) {
   clouds_.resize(stay);
 }
 
+/// That no cloud has any more: their places are free for others.
+void PartsBeside::forgetObjects() {
+  for (const std::uint32_t object : by_id_) objects_[object].is_used = false;
+  for (const Cloud& cloud : clouds_) {
+    for (const std::uint32_t object : cloud.objects) objects_[object].is_used = true;
+  }
+  const auto is_unused = [&](std::uint32_t object) { return !objects_[object].is_used; };
+  std::copy_if(by_id_.begin(), by_id_.end(), std::back_inserter(unused_), is_unused);
+  by_id_.erase(std::remove_if(by_id_.begin(), by_id_.end(), is_unused), by_id_.end());
+}
+
 /// By the newest part, or of what the turn before saw by any. Parts may share a column at their border, or leave some
 /// between them.
-void PartsBeside::forgetWhatIsSeenAgain(std::uint8_t sensor, const Turns& turns) {
+void PartsBeside::forgetWhatIsSeenAgain(const Turns& turns) {
   const ColumnSet columns = shrunk(setOf(turns.newest()), 1);
   const Turns::Bands bands = withoutEnds(turns.newestBands());
   Turns::Directions seen_by_newest;
@@ -113,7 +124,7 @@ void PartsBeside::forgetWhatIsSeenAgain(std::uint8_t sensor, const Turns& turns)
   const ColumnSet columns_of_turn = columnsIn(seen_by_turn);
   for (Cloud& cloud : clouds_) {
     const bool is_of_turn = cloud.turn == turn_;
-    if (cloud.sensor != sensor || (cloud.columns & (is_of_turn ? columns : columns_of_turn)).none()) continue;
+    if (cloud.sensor != sensor_ || (cloud.columns & (is_of_turn ? columns : columns_of_turn)).none()) continue;
     const Turns::Directions& seen = is_of_turn ? seen_by_newest : seen_by_turn;
     const auto is_seen_again = [&](const Kept& kept) { return kept.direction.isIn(seen); };
     cloud.echoes.erase(std::remove_if(cloud.echoes.begin(), cloud.echoes.end(), is_seen_again), cloud.echoes.end());
@@ -132,170 +143,234 @@ std::uint8_t PartsBeside::sensorOf(const Scan& scan) {
   return sensor;
 }
 
-void PartsBeside::findObjectsBeside(std::uint8_t sensor) {
-  objects_beside_.clear();
-  const ColumnSet& near = near_;
-  for (const Cloud& cloud : clouds_) {
-    if (cloud.sensor != sensor || cloud.objects.empty() || (cloud.columns & near).none()) continue;
-    std::uint32_t known = 0;
-    for (const Kept& kept : cloud.echoes) {
-      if (kept.object == known || kept.object == 0 || !near[kept.direction.column()]) continue;
-      known = kept.object;
-      objects_beside_.push_back(known);
-    }
-  }
-  sortUnique(objects_beside_);
-}
-
-void PartsBeside::keep(const SightPixels& pixels, std::uint8_t sensor, const JudgedScan& judged) {
-  Cloud cloud;
-  if (!spares_.empty()) {
-    cloud = std::move(spares_.back());
-    spares_.pop_back();
-  }
-  cloud.turn = turn_;
-  cloud.sensor = sensor;
-  cloud.is_judged = true;
-  cloud.columns.reset();
-  cloud.objects.clear();
-  cloud.echoes.clear();
-  if (judged.points.size() > cloud.echoes.capacity()) cloud.echoes.reserve(judged.points.size());
-  const Eigen::Isometry3f kept_from_points = (odom_from_kept_.inverse() * judged.odom_from_points).cast<float>();
-  kept_of_.assign(judged.points.size(), nullptr);
-  for (std::size_t i = 0; i < judged.points.size(); ++i) {
-    const ClusterRole role = judged.roles[i];
-    const bool takes_part = role == ClusterRole::kConnects || role == ClusterRole::kFollows;
-    if (!takes_part || pixels.row(i) < 0) continue;
-    const Turns::Direction direction(pixels.column(i), pixels.row(i));
-    cloud.columns[direction.column()] = true;
-    cloud.echoes.push_back(
-        {kept_from_points * judged.points[i], judged.heights[i], 0, direction, role, Place::kUnobserved});
-    kept_of_[i] = &cloud.echoes.back();  // stays there: there is room for all of them
-  }
-  clouds_.push_back(std::move(cloud));
-}
-
-void PartsBeside::addBeside(std::uint8_t sensor, JudgedScan& judged) {
-  // Echoes of an object follow one another.
-  std::uint32_t asked = 0;
-  bool is_beside = false;
-  const auto is_of_one_beside = [&](std::uint32_t object) {
-    if (object == asked) return is_beside;
-    asked = object;
-    return is_beside = object != 0 && std::binary_search(objects_beside_.begin(), objects_beside_.end(), object);
+void PartsBeside::measureDistances(const Turns& turns) {
+  int away = reach_ + 1;
+  const auto beyond = static_cast<std::uint8_t>(away);
+  for (std::size_t c = 0; c < kColumns; ++c) away_[c] = turns.newest()[c] != 0 ? std::uint8_t{0} : beyond;
+  const auto pass = [&](std::uint8_t& here) {
+    away = std::min(away + 1, int{here});
+    here = static_cast<std::uint8_t>(away);
   };
-  const ColumnSet& near = near_;
-  end_of_last_turn_ = judged.own();
-  for (std::size_t i = 0; i + 1 < clouds_.size(); ++i) {
-    Cloud& cloud = clouds_[i];
-    const bool is_same = cloud.sensor == sensor, may_be_near = is_same && (cloud.columns & near_).any();
-    const bool holds_object = is_same && std::any_of(cloud.objects.begin(), cloud.objects.end(), is_of_one_beside);
-    cloud.is_judged = may_be_near || holds_object;
-    if (!cloud.is_judged) continue;
-    for (Kept& kept : cloud.echoes) {
-      const bool is_near = near[kept.direction.column()];
-      if (is_near || (holds_object && is_of_one_beside(kept.object))) kept_of_.push_back(&kept);
+  // Each twice: azimuth wraps.
+  for (std::size_t c = 0; c < 2 * kColumns; ++c) pass(away_[c % kColumns]);
+  for (std::size_t c = 2 * kColumns; c-- > 0;) pass(away_[c % kColumns]);
+  for (std::size_t c = 0; c < kColumns; ++c) near_[c] = away_[c] < beyond;
+}
+
+void PartsBeside::findObjectsBeside() {
+  for (const std::uint32_t object : by_id_) objects_[object].is_beside = false;
+  for (const Cloud& cloud : clouds_) {
+    if (cloud.sensor != sensor_ || cloud.objects.empty() || (cloud.columns & near_).none()) continue;
+    for (const Kept& kept : cloud.echoes) {
+      if (isNear(kept)) objects_[kept.object].is_beside = true;
     }
-    if (cloud.turn != turn_) end_of_last_turn_ = kept_of_.size();
   }
-  addKept(judged);
+  objects_[kNone].is_beside = false;
+}
+
+void PartsBeside::chooseBeside() {
+  beside_.clear();
+  end_of_last_turn_ = 0;
+  const auto is_beside = [&](std::uint32_t object) { return objects_[object].is_beside; };
+  for (Cloud& cloud : clouds_) {
+    cloud.beside = 0;
+    if (cloud.sensor != sensor_) continue;
+    const bool may_be_near = (cloud.columns & near_).any();
+    if (!may_be_near && std::none_of(cloud.objects.begin(), cloud.objects.end(), is_beside)) continue;
+    const std::size_t first = beside_.size();
+    const auto is_chosen = [&](std::size_t i) {
+      const Kept& kept = cloud.echoes[i];
+      return (static_cast<int>(isNear(kept)) | static_cast<int>(is_beside(kept.object))) != 0;
+    };
+    forEachSelection(0, cloud.echoes.size(), is_chosen, [&](const std::uint32_t* chosen, std::size_t count) {
+      beside_.resize(beside_.size() + count);
+      Kept** next = beside_.data() + beside_.size() - count;
+      for (std::size_t k = 0; k < count; ++k) next[k] = &cloud.echoes[chosen[k]];
+    });
+    cloud.beside = beside_.size() - first;
+    if (cloud.turn != turn_) end_of_last_turn_ = beside_.size();
+  }
 }
 
 /// The entries of what lies beside, all at once: one by one, five vectors would be asked for room for each.
 void PartsBeside::addKept(JudgedScan& judged) {
-  const Eigen::Isometry3f points_from_kept = (judged.odom_from_points.inverse() * odom_from_kept_).cast<float>();
-  const std::size_t own = judged.own(), all = kept_of_.size();
+  const std::size_t own = judged.own(), all = own + beside_.size();
   judged.points.resize(all);
   judged.heights.resize(all);
   judged.roles.resize(all);
   judged.places.resize(all);
-  judged.beside = all - own;
-  for (std::size_t i = own; i < all; ++i) {
-    const Kept& kept = *kept_of_[i];
-    judged.points[i] = points_from_kept * kept.point;
-    judged.heights[i] = kept.height;
-    judged.roles[i] = kept.role;
-    judged.places[i] = kept.place;
+  judged.beside = beside_.size();
+  object_of_.assign(own, kNone);
+  object_of_.resize(all);
+  end_of_last_turn_ += own;
+  std::size_t i = 0;
+  for (const Cloud& cloud : clouds_) {
+    const Eigen::Vector3f moved = (cloud.origin - judged.odom_from_points.translation()).cast<float>();
+    addSome(beside_.data() + i, cloud.beside, moved, own + i, judged);
+    i += cloud.beside;
+  }
+}
+
+void PartsBeside::addSome(const Kept* const* kept, std::size_t count, const Eigen::Vector3f& moved, std::size_t to,
+                          JudgedScan& judged) {
+  // Bytes may be anything: as members of vectors, these would be read again after each role that is written.
+  Eigen::Vector3f* points = judged.points.data() + to;
+  float* heights = judged.heights.data() + to;
+  ClusterRole* roles = judged.roles.data() + to;
+  Place* places = judged.places.data() + to;
+  std::uint32_t* objects = object_of_.data() + to;
+  for (std::size_t i = 0; i < count; ++i) {
+    points[i] = kept[i]->point + moved;
+    heights[i] = kept[i]->height;
+    roles[i] = kept[i]->role;
+    places[i] = kept[i]->place;
+    objects[i] = kept[i]->object;
   }
 }
 
 void PartsBeside::relate(const JudgedScan& judged, Segments& segments) {
   if (!is_in_parts_) return;
   for (Segment& segment : segments) {
-    segment.object = objectOf(segment, judged.own());
-    segment.is_of_two_turns = std::any_of(segment.echoes.begin(), segment.echoes.end(), [&](std::uint32_t echo) {
-      return echo >= judged.own() && echo < end_of_last_turn_;
-    });
+    // In the order of the scan: those beside come last, and of these the ones of the turn before first.
+    const auto beside = std::lower_bound(segment.echoes.begin(), segment.echoes.end(), judged.own());
+    segment.is_of_two_turns = beside != segment.echoes.end() && *beside < end_of_last_turn_;
+    segment.object = objects_[objectOf(beside, segment.echoes.end())].id;
   }
 }
 
 /// The one that most of its echoes beside belong to.
-std::uint32_t PartsBeside::objectOf(const Segment& segment, std::size_t own) {
-  counts_.clear();
-  std::size_t newest = 0;  // of counts_; echoes of an object follow one another
-  for (const std::uint32_t echo : segment.echoes) {
-    const std::uint32_t object = echo < own ? 0 : kept_of_[echo]->object;
-    if (object == 0) continue;
-    const bool is_same = newest < counts_.size() && counts_[newest].object == object;
-    if (!is_same) newest = countOf(object);
-    ++counts_[newest].echoes;
+std::uint32_t PartsBeside::objectOf(EchoIterator first, EchoIterator last) {
+  counted_.clear();
+  for (auto echo = first; echo != last; ++echo) {
+    const std::uint32_t object = object_of_[*echo];
+    if (objects_[object].echoes++ == 0) counted_.push_back(object);
   }
-  const auto most = std::max_element(counts_.begin(), counts_.end(),
-                                     [](const Count& a, const Count& b) { return a.echoes < b.echoes; });
-  return most == counts_.end() ? 0 : most->object;
+  std::uint32_t most = kNone;
+  objects_[kNone].echoes = 0;
+  for (const std::uint32_t object : counted_) {
+    if (objects_[object].echoes > objects_[most].echoes) most = object;
+  }
+  for (const std::uint32_t object : counted_) objects_[object].echoes = 0;
+  return most;
 }
 
-/// Its place in counts_.
-std::size_t PartsBeside::countOf(std::uint32_t object) {
-  const auto known =
-      std::find_if(counts_.begin(), counts_.end(), [&](const Count& count) { return count.object == object; });
-  const auto place = static_cast<std::size_t>(known - counts_.begin());
-  if (known == counts_.end()) counts_.push_back({object, 0});
+/// In objects_.
+std::uint32_t PartsBeside::placeOf(std::uint32_t id) {
+  if (id == 0) return kNone;
+  const auto known = std::lower_bound(by_id_.begin(), by_id_.end(), id, [&](std::uint32_t object, std::uint32_t asked) {
+    return objects_[object].id < asked;
+  });
+  if (known != by_id_.end() && objects_[*known].id == id) return *known;
+  auto place = static_cast<std::uint32_t>(objects_.size());
+  if (unused_.empty()) {
+    objects_.emplace_back();
+  } else {
+    place = unused_.back();
+    unused_.pop_back();
+  }
+  objects_[place].id = id;
+  by_id_.insert(known, place);
   return place;
 }
 
-void PartsBeside::listObjects(Cloud& cloud) {
-  cloud.objects.clear();
-  std::uint32_t known = 0;
-  for (const Kept& kept : cloud.echoes) {
-    if (kept.object == known || kept.object == 0) continue;
-    known = kept.object;
-    cloud.objects.push_back(known);
-  }
-  sortUnique(cloud.objects);
+void PartsBeside::list(Cloud& cloud, std::uint32_t object) {
+  const bool is_known =
+      object == kNone || std::find(cloud.objects.rbegin(), cloud.objects.rend(), object) != cloud.objects.rend();
+  if (!is_known) cloud.objects.push_back(object);
 }
 
-void PartsBeside::settle(const Segments& segments, const Verdicts& verdicts, JudgedScan& judged) {
+void PartsBeside::settle(const SightPixels& pixels, const Segments& segments, const Verdicts& verdicts,
+                         JudgedScan& judged) {
   if (!is_in_parts_) return;
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    for (const std::uint32_t echo : segments[i].echoes) {
-      if (kept_of_[echo] != nullptr) kept_of_[echo]->object = verdicts[i].object;
+    const std::uint32_t object = placeOf(verdicts[i].object);
+    for (const std::uint32_t echo : segments[i].echoes) object_of_[echo] = object;
+  }
+  const std::size_t own = judged.own();
+  std::size_t i = 0;
+  for (Cloud& cloud : clouds_) {
+    for (const std::size_t end = i + cloud.beside; i < end; ++i) {
+      const std::uint32_t object = object_of_[own + i];
+      if (beside_[i]->object == object) continue;
+      beside_[i]->object = object;
+      list(cloud, object);
     }
   }
-  for (std::size_t i = 0; i < judged.own(); ++i) {
-    if (kept_of_[i] != nullptr) kept_of_[i]->place = judged.places[i];
-  }
-  for (Cloud& cloud : clouds_) {
-    if (cloud.is_judged) listObjects(cloud);
-  }
-  judged.points.resize(judged.own());
-  judged.heights.resize(judged.points.size());
-  judged.roles.resize(judged.points.size());
-  judged.places.resize(judged.points.size());
+  judged.points.resize(own);
+  judged.heights.resize(own);
+  judged.roles.resize(own);
+  judged.places.resize(own);
   judged.beside = 0;
+  keep(pixels, judged);
+}
+
+PartsBeside::Cloud& PartsBeside::newCloud() {
+  if (spares_.empty()) return clouds_.emplace_back();
+  clouds_.push_back(std::move(spares_.back()));
+  spares_.pop_back();
+  return clouds_.back();
+}
+
+void PartsBeside::keep(const SightPixels& pixels, const JudgedScan& judged) {
+  Cloud& cloud = newCloud();
+  cloud.turn = turn_;
+  cloud.sensor = sensor_;
+  cloud.origin = judged.odom_from_points.translation();
+  cloud.beside = 0;
+  cloud.objects.clear();
+  cloud.echoes.clear();
+  const auto takes_part = [&](std::size_t i) {
+    const ClusterRole role = judged.roles[i];
+    return (static_cast<int>(role == ClusterRole::kConnects) | static_cast<int>(role == ClusterRole::kFollows)) != 0 &&
+           pixels.row(i) >= 0;
+  };
+  if (judged.points.size() > cloud.echoes.capacity()) cloud.echoes.reserve(judged.points.size());
+  Turns::Columns with_echo{};
+  const Eigen::Vector3f* points = judged.points.data();
+  const float* heights = judged.heights.data();
+  const ClusterRole* roles = judged.roles.data();
+  const Place* places = judged.places.data();
+  const std::uint32_t* objects = object_of_.data();
+  std::uint32_t newest = kNone;
+  forEachSelection(0, judged.points.size(), takes_part, [&](const std::uint32_t* chosen, std::size_t count) {
+    cloud.echoes.resize(cloud.echoes.size() + count);
+    Kept* next = cloud.echoes.data() + cloud.echoes.size() - count;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::uint32_t i = chosen[k];
+      Kept& kept = next[k];
+      kept.point = points[i];
+      kept.height = heights[i];
+      kept.object = objects[i];
+      kept.direction = Turns::Direction(pixels.column(i), pixels.row(i));
+      kept.reach = reachOf(points[i] - judged.sensor);
+      kept.role = roles[i];
+      kept.place = places[i];
+      with_echo[kept.direction.column()] = 1;
+      if (kept.object != newest) list(cloud, newest = kept.object);
+    }
+  });
+  cloud.columns = setOf(with_echo);
+}
+
+inline std::uint8_t PartsBeside::reachOf(const Eigen::Vector3f& from_sensor) const {
+  const float columns = touch_ / std::sqrt(from_sensor.head<2>().squaredNorm()) + beyond_touch_;
+  return static_cast<std::uint8_t>(std::min(columns, farthest_));
 }
 
 void PartsBeside::reset() {
   forgetIf([](const Cloud&) { return true; });
+  forgetObjects();
   mountings_.clear();
   is_in_parts_ = false;
 }
 
-double PartsBeside::bytesFor(double echoes) { return echoes * sizeof(Kept) + 2.0 * echoes * sizeof(Kept*); }
+double PartsBeside::bytesFor(double echoes) { return echoes * (sizeof(Kept) + sizeof(Kept*) + sizeof(std::uint32_t)); }
 
 std::size_t PartsBeside::memoryBytes() const {
-  std::size_t bytes = kept_of_.capacity() * sizeof(Kept*) + mountings_.capacity() * sizeof(Eigen::Isometry3d) +
-                      objects_beside_.capacity() * sizeof(std::uint32_t) + counts_.capacity() * sizeof(Count);
+  std::size_t bytes =
+      beside_.capacity() * sizeof(Kept*) + mountings_.capacity() * sizeof(Eigen::Isometry3d) +
+      objects_.capacity() * sizeof(KeptObject) +
+      (object_of_.capacity() + by_id_.capacity() + unused_.capacity() + counted_.capacity()) * sizeof(std::uint32_t);
   for (const auto* clouds : {&clouds_, &spares_}) {
     bytes += clouds->capacity() * sizeof(Cloud);
     for (const Cloud& cloud : *clouds) {

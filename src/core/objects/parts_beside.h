@@ -1,6 +1,7 @@
 // What a border between parts cuts is one object (algorithm: "Objects across parts").
 #pragma once
 
+#include <array>
 #include <bitset>
 #include <cstddef>
 #include <cstdint>
@@ -14,25 +15,29 @@ namespace donex {
 
 struct PartsBesideOptions {
   float border = 0.7F;  ///< gaps of twice as much between parts count as looked at: no beams lie farther apart [deg]
-  float reach = 15.0F;  ///< cells of clusters that touch lie within it from 2.3 m on [deg]
+  float touch = 2.83F;  ///< echoes in cells of clusters that touch lie no more of their edges apart
+  float touch_angle = 0.015F;  ///< and so much more: cells touch from farther away with the distance [rad]
+  float reach = 15.0F;         ///< never more, which is enough from 3.5 m on; up to 85 [deg]
 };
 
 /// The echoes of a turn's earlier parts that lie beside its newest part. The object step sees both: then a segment is
 /// as large as in a whole scan, and only labels of the part's own echoes are given. Whole scans have nothing beside.
 class PartsBeside {
  public:
-  explicit PartsBeside(const PartsBesideOptions& options = {});
+  /// `cell`: edge of the cells of clusters [m].
+  explicit PartsBeside(double cell, const PartsBesideOptions& options = {});
 
   /// Adds to the entries of a cloud those of the same sensor's earlier clouds of the turn that lie beside it: with an
-  /// object that reaches there, all of its echoes. `pixels`: the cloud's directions; `turns` has taken it. The cloud's
-  /// own places need not be judged before settle().
-  void join(TurnPart part, const Scan& scan, const SightPixels& pixels, const Turns& turns, JudgedScan& judged);
+  /// object that reaches there, all of its echoes. `turns` has taken the cloud, whose own places need not be judged
+  /// yet.
+  void join(TurnPart part, const Scan& scan, const Turns& turns, JudgedScan& judged);
 
   /// Says which object each segment goes on with, and whether more of it may come.
   void relate(const JudgedScan& judged, Segments& segments);
 
-  /// Takes the others' entries off again, and remembers the echoes' places and what objects they belong to.
-  void settle(const Segments& segments, const Verdicts& verdicts, JudgedScan& judged);
+  /// Takes the others' entries off again, and remembers the echoes and what objects they belong to. `pixels`: the
+  /// cloud's directions.
+  void settle(const SightPixels& pixels, const Segments& segments, const Verdicts& verdicts, JudgedScan& judged);
 
   void reset();
   std::size_t memoryBytes() const;
@@ -40,14 +45,16 @@ class PartsBeside {
   static double bytesFor(double echoes);
 
  private:
+  using EchoIterator = decltype(Segment::echoes)::const_iterator;
   using ColumnSet = std::bitset<SightPixels::kColumns>;
 
   /// An echo that takes part in clusters.
   struct Kept {
-    Eigen::Vector3f point;  ///< in the points frame of the turn's first part [m]
+    Eigen::Vector3f point;  ///< in its cloud's points frame [m]
     float height;           ///< above the local ground [m]
-    std::uint32_t object;   ///< that it belongs to; 0: none
-    Turns::Direction direction;
+    std::uint32_t object;   ///< that it belongs to, of objects_
+    Turns::Direction direction{0, 0};
+    std::uint8_t reach;  ///< what touches it lies no more columns away
     ClusterRole role;
     Place place;
   };
@@ -55,41 +62,61 @@ class PartsBeside {
   struct Cloud {
     std::uint32_t turn = 0;
     std::uint8_t sensor = 0;
-    bool is_judged = false;              ///< with the newest part: it is that, or some of it lies beside
-    ColumnSet columns;                   ///< with an echo
-    std::vector<std::uint32_t> objects;  ///< that any echo belongs to; ascending, each once
+    Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of its points frame, in odometry [m]
+    std::size_t beside = 0;                            ///< entries of the judged scan
+    ColumnSet columns;                                 ///< with an echo
+    std::vector<std::uint32_t> objects;                ///< that any echo belongs to; some may have lost their last one
     std::vector<Kept> echoes;
   };
-  struct Count {
-    std::uint32_t object;
-    std::size_t echoes;
+  /// What echoes belong to.
+  struct KeptObject {
+    std::uint32_t id = 0;      ///< of the track
+    bool is_beside = false;    ///< reaches what the part looks at
+    bool is_used = false;      ///< a cloud has it
+    std::uint32_t echoes = 0;  ///< of one segment
   };
 
-  void beginTurn(TurnPart part, const JudgedScan& judged);
+  void beginTurn(TurnPart part);
   template <class Condition>
   void forgetIf(Condition&& condition);
-  void forgetWhatIsSeenAgain(std::uint8_t sensor, const Turns& turns);
+  void forgetObjects();
+  void forgetWhatIsSeenAgain(const Turns& turns);
   std::uint8_t sensorOf(const Scan& scan);
-  void findObjectsBeside(std::uint8_t sensor);
-  void addBeside(std::uint8_t sensor, JudgedScan& judged);
+  void measureDistances(const Turns& turns);
+  bool isNear(const Kept& kept) const { return away_[kept.direction.column()] <= kept.reach; }
+  void findObjectsBeside();
+  void chooseBeside();
   void addKept(JudgedScan& judged);
-  void keep(const SightPixels& pixels, std::uint8_t sensor, const JudgedScan& judged);
-  static void listObjects(Cloud& cloud);
-  std::uint32_t objectOf(const Segment& segment, std::size_t own);
-  std::size_t countOf(std::uint32_t object);
+  void addSome(const Kept* const* kept, std::size_t count, const Eigen::Vector3f& moved, std::size_t to,
+               JudgedScan& judged);
+  Cloud& newCloud();
+  void keep(const SightPixels& pixels, const JudgedScan& judged);
+  std::uint8_t reachOf(const Eigen::Vector3f& from_sensor) const;
+  static void list(Cloud& cloud, std::uint32_t object);
+  std::uint32_t objectOf(EchoIterator first, EchoIterator last);
+  std::uint32_t placeOf(std::uint32_t id);
+
+  static constexpr std::uint32_t kNone = 0;  ///< of objects_
 
   int reach_, border_;  ///< columns
+  float touch_;         ///< columns that echoes which touch lie apart, 1 m away from the sensor,
+  float beyond_touch_;  ///< and as many more anywhere
+  float farthest_;      ///< the same as reach_
   std::uint32_t turn_ = 0;
-  bool is_in_parts_ = false;  ///< the turn
-  Eigen::Isometry3d odom_from_kept_ = Eigen::Isometry3d::Identity();
-  std::vector<Eigen::Isometry3d> mountings_;   ///< by sensor
-  std::vector<Cloud> clouds_;                  ///< of this turn and, where they were not seen again, of the one before
-  std::vector<Cloud> spares_;                  ///< storage for the next ones
-  std::size_t end_of_last_turn_ = 0;           ///< entries of the judged scan from its own to there
-  std::vector<Kept*> kept_of_;                 ///< by entry of the judged scan; nullptr where it takes part in nothing
-  ColumnSet near_;                             ///< close to what the part looks at
-  std::vector<std::uint32_t> objects_beside_;  ///< ascending, each once
-  std::vector<Count> counts_;                  ///< of one segment
+  std::uint8_t sensor_ = 0;                   ///< of the newest part
+  bool is_in_parts_ = false;                  ///< the turn
+  std::vector<Eigen::Isometry3d> mountings_;  ///< by sensor
+  std::vector<Cloud> clouds_;                 ///< of this turn and, where they were not seen again, of the one before
+  std::vector<Cloud> spares_;                 ///< storage for the next ones
+  std::vector<KeptObject> objects_;           ///< their places stay; the first one stands for none
+  std::vector<std::uint32_t> by_id_;          ///< of objects_, with ascending ids
+  std::vector<std::uint32_t> unused_;         ///< of objects_
+  std::array<std::uint8_t, SightPixels::kColumns> away_{};  ///< columns from what the part looks at
+  ColumnSet near_;                                          ///< within reach of it
+  std::vector<Kept*> beside_;                               ///< by entry of the judged scan, from its own on
+  std::vector<std::uint32_t> object_of_;                    ///< by entry of the judged scan: of objects_
+  std::size_t end_of_last_turn_ = 0;                        ///< entries of the judged scan from its own to there
+  std::vector<std::uint32_t> counted_;                      ///< of objects_: those in one segment
 };
 
 }  // namespace donex

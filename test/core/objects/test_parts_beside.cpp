@@ -9,13 +9,13 @@
 namespace donex {
 namespace {
 
-/// Echoes on a circle of 10 m, one per degree from `begin` to `end` [deg].
-Scan arc(double begin, double end, double stamp = 0.0) {
+/// Echoes on a circle, one per degree from `begin` to `end` [deg].
+Scan arc(double begin, double end, double stamp = 0.0, double radius = 10.0) {
   Scan scan;
   scan.stamp = stamp;
   for (double at = begin + 0.5; at < end; at += 1.0) {
     const double angle = at * kRadiansPerDegree;
-    scan.echoes.push_back(Eigen::Vector3d(10.0 * std::cos(angle), 10.0 * std::sin(angle), 0.0).cast<float>());
+    scan.echoes.push_back(Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), 0.0).cast<float>());
   }
   return scan;
 }
@@ -36,7 +36,7 @@ class Parts {
     pixels_.project(scan.echoes, judged.is_echo);
     part = turns_.arrive(scan, pixels_);
     judged.continues_turn = part == TurnPart::kContinuing;
-    parts.join(part, scan, pixels_, turns_, judged);
+    parts.join(part, scan, turns_, judged);
     return judged;
   }
   /// One segment of all entries, which is the object `id`.
@@ -45,7 +45,7 @@ class Parts {
     Segment& segment = segments.add(judged.points.size());
     for (std::uint32_t i = 0; i < judged.points.size(); ++i) segment.echoes.push_back(i);
     parts.relate(judged, segments);
-    parts.settle(segments, {Verdict{Proof::kNone, false, id}}, judged);
+    parts.settle(pixels_, segments, {Verdict{Proof::kNone, false, id}}, judged);
     return segments[0];
   }
   void take(const Scan& scan, std::uint32_t id = 0) {
@@ -53,7 +53,7 @@ class Parts {
     settle(id);
   }
 
-  PartsBeside parts;
+  PartsBeside parts{0.3};
   JudgedScan judged;
   Segments segments;
   TurnPart part = TurnPart::kWhole;
@@ -74,9 +74,9 @@ TEST(PartsBeside, WholeScansHaveNothingBeside) {
 }
 
 /// After a turn that is not known to be in parts and one that is, stamps up to 0.2 s.
-Parts afterTwoTurnsInQuarters() {
+Parts afterTwoTurnsInQuarters(double radius = 10.0) {
   Parts parts;
-  for (int q = 0; q < 8; ++q) parts.take(arc(90.0 * (q % 4), 90.0 * (q % 4) + 90.0, 0.025 * q));
+  for (int q = 0; q < 8; ++q) parts.take(arc(90.0 * (q % 4), 90.0 * (q % 4) + 90.0, 0.025 * q, radius));
   return parts;
 }
 
@@ -87,11 +87,11 @@ TEST(PartsBeside, HoldWhatTheTurnSawWithinReach) {
   const JudgedScan& second = parts.join(arc(90.0, 180.0, 0.225));
   EXPECT_TRUE(second.continues_turn);
   EXPECT_EQ(second.own(), 90U);
-  // 15 degrees to either side: of the part before, and of the turn before where this one has not looked yet.
-  EXPECT_NEAR(static_cast<double>(second.beside), 30.0, 4.0);
+  // 0.85 m and 0.015 rad to either side: of the part before, and of the turn before where this one has not looked yet.
+  EXPECT_NEAR(static_cast<double>(second.beside), 12.0, 2.0);
   for (std::size_t i = second.own(); i < second.points.size(); ++i) {
     const double at = std::atan2(second.points[i].y(), second.points[i].x()) / kRadiansPerDegree;
-    EXPECT_TRUE((at > 74.0 && at < 91.0) || (at > 179.0 || at < -164.0)) << at;
+    EXPECT_TRUE((at > 83.0 && at < 91.0) || (at > 179.0 || at < -173.0)) << at;
     EXPECT_EQ(second.places[i], Place::kNew);
   }
   parts.settle(0);
@@ -99,14 +99,36 @@ TEST(PartsBeside, HoldWhatTheTurnSawWithinReach) {
   EXPECT_EQ(parts.judged.places.size(), 90U);
 }
 
+TEST(PartsBeside, TheReachIsALengthButNotMoreThanFifteenDegrees) {
+  const auto beside_at = [](double radius) {
+    Parts parts = afterTwoTurnsInQuarters(radius);
+    parts.take(arc(0.0, 90.0, 0.2, radius));
+    return static_cast<double>(parts.join(arc(90.0, 180.0, 0.225, radius)).beside);
+  };
+  EXPECT_NEAR(beside_at(2.0), 30.0, 2.0);
+  EXPECT_NEAR(beside_at(5.0), 22.0, 2.0);
+  EXPECT_NEAR(beside_at(40.0), 5.0, 2.0);
+}
+
 TEST(PartsBeside, AnObjectThatReachesThereComesWhole) {
   Parts parts = afterTwoTurnsInQuarters();
   parts.take(arc(0.0, 90.0, 0.2), 7);
-  // Its 90 echoes, with the 15 degrees of the turn before that were one segment with them, and those to the other side.
-  EXPECT_NEAR(static_cast<double>(parts.join(arc(90.0, 180.0, 0.225)).beside), 120.0, 6.0);
+  // Its 90 echoes, with those of the turn before that were one segment with them, and those to the other side.
+  EXPECT_NEAR(static_cast<double>(parts.join(arc(90.0, 180.0, 0.225)).beside), 102.0, 3.0);
   EXPECT_EQ(parts.settle(7).object, 7U);
   parts.join(arc(180.0, 270.0, 0.25));
   EXPECT_EQ(parts.settle(8).object, 7U) << "the echoes of both parts belong to it";
+}
+
+TEST(PartsBeside, ObjectsAreToldApartHoweverManyCome) {
+  Parts parts = afterTwoTurnsInQuarters();
+  std::uint32_t before = 0;
+  for (int part = 0; part < 40; ++part) {
+    parts.join(arc(90.0 * (part % 4), 90.0 * (part % 4) + 90.0, 0.2 + 0.025 * part));
+    const auto next = static_cast<std::uint32_t>(100 * (part + 1));
+    EXPECT_EQ(parts.settle(next).object, before);
+    before = next;
+  }
 }
 
 TEST(PartsBeside, ASegmentGoesOnWhereTheTurnHasNotLookedYet) {
