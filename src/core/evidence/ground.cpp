@@ -147,12 +147,14 @@ void Ground::moveMap(int x, int y, float up) {
 /// What comes into the map has the values of its rim.
 void Ground::moveMap(std::vector<float>& map, int x, int y, float up) {
   moved_.resize(map.size());
-  const auto inside = [&](int i) { return static_cast<std::size_t>(std::clamp(i, 0, width_ - 1)); };
-  const auto width = static_cast<std::size_t>(width_);
+  const auto inside = [&](int i) { return std::clamp(i, 0, width_ - 1); };
+  const int first = std::clamp(-x, 0, width_), last = std::clamp(width_ - x, first, width_);  // have a place in the old
   for (int to_y = 0; to_y < width_; ++to_y) {
-    for (int to_x = 0; to_x < width_; ++to_x) {
-      moved_[inside(to_y) * width + inside(to_x)] = map[inside(to_y + y) * width + inside(to_x + x)] + up;
-    }
+    const float* from = map.data() + static_cast<std::ptrdiff_t>(inside(to_y + y)) * width_;
+    float* to = moved_.data() + static_cast<std::ptrdiff_t>(to_y) * width_;
+    std::fill(to, to + first, from[0] + up);
+    for (int to_x = first; to_x < last; ++to_x) to[to_x] = from[to_x + x] + up;
+    std::fill(to + last, to + width_, from[width_ - 1] + up);
   }
   map.swap(moved_);
 }
@@ -170,12 +172,12 @@ void Ground::collect(const std::vector<Eigen::Vector3f>& echoes, const std::vect
 
 /// Sectors that hold an echo of the present cloud, and those beside.
 Ground::Sectors Ground::sectorsHit() const {
-  Sectors hit = 0;
+  std::array<std::uint8_t, kInAll + 1> has_echo{};
   for (const int cell : cell_of_) {
-    if (cell < 0) continue;
-    const Sector sector = sector_of_[static_cast<std::size_t>(cell)];
-    if (sector != kInAll) hit |= Sectors{1} << sector;
+    if (cell >= 0) has_echo[sector_of_[static_cast<std::size_t>(cell)]] = 1;
   }
+  Sectors hit = 0;
+  for (std::size_t sector = 0; sector < kBearings; ++sector) hit |= Sectors{has_echo[sector]} << sector;
   return hit | hit << 1 | hit >> 1 | hit << (kBearings - 1) | hit >> (kBearings - 1);
 }
 
@@ -188,9 +190,11 @@ Ground::Sector Ground::sectorOf(int x, int y) {
 /// Cells of other sectors keep the ground that they have.
 void Ground::continueOutwards(Sectors sectors) {
   if (sectors == 0) return;
+  std::array<bool, kInAll + 1> is_asked{};
+  is_asked[kInAll] = true;
+  for (std::size_t sector = 0; sector < kBearings; ++sector) is_asked[sector] = (sectors >> sector & 1U) != 0;
   for (const Cell& cell : outwards_) {
-    const bool is_asked = cell.sector == kInAll || (sectors >> cell.sector & 1U) != 0;
-    if (!is_asked) continue;
+    if (!is_asked[cell.sector]) continue;
     const std::size_t i = indexOf(cell.x, cell.y);
     const Continuation expected = continueTo(cell);
     const float down = std::min(options_.roughness + options_.fall * expected.unseen, options_.largest_step);
