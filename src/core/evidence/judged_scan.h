@@ -41,8 +41,10 @@ struct JudgedScan {
   bool has_ground = true;              ///< otherwise heights are above the window's lowest corner
   std::vector<ClusterRole> roles;
   std::vector<Place> places;
-  std::size_t beside = 0;       ///< entries of earlier parts of the turn
-  bool continues_turn = false;  ///< earlier parts of the turn have been judged
+  std::size_t beside = 0;               ///< entries of earlier parts of the turn
+  std::size_t far = 0;                  ///< the last of these: they touch none of the cloud itself
+  std::vector<std::uint32_t> together;  ///< by entry beside: what was one object has one number; 0: of none
+  bool continues_turn = false;          ///< earlier parts of the turn have been judged
 
   /// Entries of the cloud itself.
   std::size_t own() const { return points.size() - beside; }

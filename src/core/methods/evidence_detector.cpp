@@ -140,7 +140,7 @@ class EvidenceDetector : public Detector {
     const std::size_t judged = judged_.points.capacity() * sizeof(Eigen::Vector3f) +
                                judged_.heights.capacity() * sizeof(float) + judged_.is_echo.capacity() +
                                judged_.is_solid.capacity() + judged_.roles.capacity() + judged_.places.capacity() +
-                               proofs_.capacity();
+                               judged_.together.capacity() * sizeof(std::uint32_t) + proofs_.capacity();
     const std::size_t decided =
         segments_.memoryBytes() + predictions_.capacity() * sizeof(Prediction) + verdicts_.capacity() * sizeof(Verdict);
     return in_grid + judged + decided + places_.memoryBytes() + sights_.memoryBytes() + own_body_.memoryBytes() +

@@ -88,28 +88,29 @@ int Clusters::cellAbove(int x_y) const {
 }
 
 void Clusters::connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
-                       const std::vector<float>& heights, const std::vector<ClusterRole>& roles,
+                       const std::vector<float>& heights, const std::vector<ClusterRole>& roles, const Known& known,
                        const Workers& workers) {
   constexpr std::size_t kJoinedTogether = 256;  // columns; far ones have more neighbours to look at
-  fill(sensor, echoes, heights, roles);
+  fill(sensor, echoes, heights, roles, echoes.size() - known.far);
   const auto join_some = [&](std::size_t first, std::size_t last) {
     for (std::size_t column = first; column < last; ++column) join(static_cast<int>(column));
   };
   is_shared_ = workers.threads() > 1;
   forEachStretch(workers, columns_.size(), join_some, kJoinedTogether);
+  joinKnown(known, echoes.size());
   number(echoes.size());
   for (const Column& column : columns_) column_at_[columnOf(column.x, column.y)] = kNone;
 }
 
 /// Cells are numbered in the order of their first echoes.
 void Clusters::fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
-                    const std::vector<float>& heights, const std::vector<ClusterRole>& roles) {
+                    const std::vector<float>& heights, const std::vector<ClusterRole>& roles, std::size_t count) {
   parents_.clear();
   columns_.clear();
   cell_in_column_.clear();
   members_.clear();
-  for (std::size_t first = 0; first < echoes.size(); first += kSelectionBlock) {
-    const std::size_t last = std::min(first + kSelectionBlock, echoes.size());
+  for (std::size_t first = 0; first < count; first += kSelectionBlock) {
+    const std::size_t last = std::min(first + kSelectionBlock, count);
     if (hasAny(&roles[first], last - first)) fillSome(sensor, echoes, heights, roles, first, last);
   }
 }
@@ -208,6 +209,29 @@ void Clusters::joinRun(const Column& here, const int* cells, int first_z, int la
   }
 }
 
+void Clusters::joinKnown(const Known& known, std::size_t echoes) {
+  cell_of_known_.clear();
+  for (auto near = members_.rbegin(); near != members_.rend() && near->echo >= known.first; ++near) {
+    const std::uint32_t number = known.numbers[near->echo - known.first];
+    if (number == 0 || near->cluster < 0) continue;
+    if (number >= cell_of_known_.size()) cell_of_known_.resize(number + 1, kNone);
+    int& cell = cell_of_known_[number];
+    if (cell == kNone) cell = near->cluster;
+    if (parentOf(near->cluster) != cell) cell = unite(cell, near->cluster);
+  }
+  const std::size_t connecting = members_.size();
+  members_.resize(connecting + known.far);
+  Member* member = members_.data() + connecting;
+  for (std::size_t echo = echoes - known.far; echo < echoes; ++echo) {
+    const std::uint32_t number = known.numbers[echo - known.first];
+    if (number >= cell_of_known_.size() || cell_of_known_[number] == kNone) continue;
+    member->echo = static_cast<std::uint32_t>(echo);
+    member->cluster = cell_of_known_[number];
+    ++member;
+  }
+  members_.resize(static_cast<std::size_t>(member - members_.data()));
+}
+
 /// In the order of their first echoes: independent of how the cells were joined.
 void Clusters::number(std::size_t echoes) {
   // No parent is behind its cell, so that all of them have met their roots already.
@@ -261,7 +285,7 @@ Clusters::Options clustersOf(const ObjectConfig& config, double finer) {
 
 std::size_t Clusters::memoryBytes() const {
   const std::size_t numbers = column_at_.capacity() + cell_in_column_.capacity() + parents_.capacity() +
-                              of_.capacity() + number_of_root_.capacity();
+                              of_.capacity() + cell_of_known_.capacity() + number_of_root_.capacity();
   return numbers * sizeof(int) + columns_.capacity() * sizeof(Column) + members_.capacity() * sizeof(Member) +
          echoes_in_.capacity() * sizeof(std::size_t);
 }

@@ -25,9 +25,21 @@ class Clusters {
   /// A square of `reach` [m] around the sensor.
   Clusters(double reach, const Options& options);
 
+  /// Echoes that are connected anyway.
+  struct Known {
+    std::size_t first;                          ///< of the echoes that have a number; all behind it have one
+    std::size_t far;                            ///< the last echoes: they connect nothing, but go with their number
+    const std::vector<std::uint32_t>& numbers;  ///< what has the same one is one cluster; 0: nothing is known
+  };
+
   /// `echoes` [m] in a frame whose z points up, `heights` above ground [m], one per echo.
   void connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
                const std::vector<float>& heights, const std::vector<ClusterRole>& roles,
+               const Workers& workers = Workers::alone()) {
+    connect(sensor, echoes, heights, roles, {echoes.size(), 0, {}}, workers);
+  }
+  void connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
+               const std::vector<float>& heights, const std::vector<ClusterRole>& roles, const Known& known,
                const Workers& workers = Workers::alone());
 
   static constexpr int kNone = -1;
@@ -72,12 +84,13 @@ class Clusters {
   int rootOf(int cell);
   int unite(int a, int b);
   void fill(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
-            const std::vector<float>& heights, const std::vector<ClusterRole>& roles);
+            const std::vector<float>& heights, const std::vector<ClusterRole>& roles, std::size_t count);
   void fillSome(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
                 const std::vector<float>& heights, const std::vector<ClusterRole>& roles, std::size_t begin,
                 std::size_t end);
   void join(int column);
   void joinRun(const Column& here, const int* cells, int first_z, int last_z);
+  void joinKnown(const Known& known, std::size_t echoes);
   void number(std::size_t echoes);
 
   Options options_;
@@ -90,6 +103,7 @@ class Clusters {
   std::vector<int> parents_;         ///< by cell: union-find
   std::vector<int> of_;              ///< by echo: its cluster
   std::vector<Member> members_;      ///< before they are numbered, `cluster` is the cell, or ~columnOf what is above
+  std::vector<int> cell_of_known_;   ///< by what is known: one of its cells, or kNone
   std::vector<int> number_of_root_;
   std::vector<std::size_t> echoes_in_;  ///< by cluster
 };

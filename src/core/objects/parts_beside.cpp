@@ -68,6 +68,7 @@ PartsBeside::PartsBeside(double cell, const PartsBesideOptions& options)
       touch_(options.touch * static_cast<float>(cell) * kColumnsPerRadian),
       beyond_touch_(options.touch_angle * kColumnsPerRadian + 1.0F),
       farthest_(static_cast<float>(reach_)),
+      large_(options.large),
       objects_(1) {}
 
 void PartsBeside::join(TurnPart part, const Scan& scan, const Turns& turns, JudgedScan& judged) {
@@ -158,82 +159,132 @@ void PartsBeside::measureDistances(const Turns& turns) {
 }
 
 void PartsBeside::findObjectsBeside() {
-  for (const std::uint32_t object : by_id_) objects_[object].is_beside = false;
+  for (const std::uint32_t object : by_id_) objects_[object].comes = {};
   for (const Cloud& cloud : clouds_) {
     if (cloud.sensor != sensor_ || cloud.objects.empty() || (cloud.columns & near_).none()) continue;
     for (const Kept& kept : cloud.echoes) {
-      if (isNear(kept)) objects_[kept.object].is_beside = true;
+      if (!isNear(kept)) continue;
+      Coming& comes = objects_[kept.object].comes[whenOf(cloud)];
+      comes = std::max(comes, kept.role == ClusterRole::kConnects ? kAsFar : kAsNear);
     }
   }
-  objects_[kNone].is_beside = false;
+  objects_[kNone].comes = {};
+  for (const std::uint32_t place : by_id_) {
+    KeptObject& object = objects_[place];
+    if (object.comes == std::array<Coming, 2>{}) continue;
+    for (Coming& comes : object.comes) {
+      const Coming as_far = object.is_thinned ? kThinned : kAsFar;
+      comes = comes == kAsFar ? as_far : kAsNear;
+    }
+  }
 }
 
 void PartsBeside::chooseBeside() {
-  beside_.clear();
-  end_of_last_turn_ = 0;
-  const auto is_beside = [&](std::uint32_t object) { return objects_[object].is_beside; };
+  for (Lot& lot : lots_) {
+    lot.count = lot.end_of_last_turn = 0;
+  }
   for (Cloud& cloud : clouds_) {
-    cloud.beside = 0;
+    cloud.in_lot = {};
     if (cloud.sensor != sensor_) continue;
     const bool may_be_near = (cloud.columns & near_).any();
-    if (!may_be_near && std::none_of(cloud.objects.begin(), cloud.objects.end(), is_beside)) continue;
-    const std::size_t first = beside_.size();
-    const auto is_chosen = [&](std::size_t i) {
-      const Kept& kept = cloud.echoes[i];
-      return (static_cast<int>(isNear(kept)) | static_cast<int>(is_beside(kept.object))) != 0;
-    };
-    forEachSelection(0, cloud.echoes.size(), is_chosen, [&](const std::uint32_t* chosen, std::size_t count) {
-      beside_.resize(beside_.size() + count);
-      Kept** next = beside_.data() + beside_.size() - count;
-      for (std::size_t k = 0; k < count; ++k) next[k] = &cloud.echoes[chosen[k]];
-    });
-    cloud.beside = beside_.size() - first;
-    if (cloud.turn != turn_) end_of_last_turn_ = beside_.size();
+    const auto comes = [&](std::uint32_t object) { return objects_[object].comes[whenOf(cloud)] != kNot; };
+    if (may_be_near || std::any_of(cloud.objects.begin(), cloud.objects.end(), comes)) chooseBeside(cloud);
+  }
+}
+
+void PartsBeside::chooseBeside(Cloud& cloud) {
+  std::array<Kept**, 2> begin, next;
+  for (std::size_t k = 0; k < lots_.size(); ++k) {
+    const std::size_t most = lots_[k].count + cloud.echoes.size();
+    if (most > lots_[k].echoes.size()) lots_[k].echoes.resize(most);
+    begin[k] = next[k] = lots_[k].echoes.data() + lots_[k].count;
+  }
+  // Written in any case: which it is changes from echo to echo.
+  static_assert(kAsNear == 1 && kAsFar == 2 && kThinned == 4);
+  const std::uint32_t when = whenOf(cloud);
+  const KeptObject* objects = objects_.data();
+  for (std::size_t i = 0; i < cloud.echoes.size(); ++i) {
+    Kept& kept = cloud.echoes[i];
+    const int near = static_cast<int>(isNear(kept)), comes = objects[kept.object].comes[when];
+    *next[0] = *next[1] = &kept;
+    next[0] += near | (comes & kAsNear);
+    next[1] += (1 - near) & (comes >> 1 | (comes >> 2 & static_cast<int>(i % kOneIn == 0)));
+  }
+  for (std::size_t k = 0; k < lots_.size(); ++k) {
+    Lot& lot = lots_[k];
+    cloud.in_lot[k] = static_cast<std::size_t>(next[k] - begin[k]);
+    lot.count += cloud.in_lot[k];
+    if (when == 0) lot.end_of_last_turn = lot.count;
+  }
+}
+
+/// `visit(cloud, kept, count, entry)`: of a cloud in a lot, and the first one's entry.
+template <class Visit>
+void PartsBeside::forEachBeside(Visit&& visit) {
+  for (std::size_t k = 0; k < lots_.size(); ++k) {
+    std::size_t i = 0;
+    for (Cloud& cloud : clouds_) {
+      visit(cloud, lots_[k].echoes.data() + i, cloud.in_lot[k], lots_[k].first + i);
+      i += cloud.in_lot[k];
+    }
   }
 }
 
 /// The entries of what lies beside, all at once: one by one, five vectors would be asked for room for each.
 void PartsBeside::addKept(JudgedScan& judged) {
-  const std::size_t own = judged.own(), all = own + beside_.size();
+  std::size_t all = judged.points.size();
+  object_of_.assign(all, kNone);
+  for (Lot& lot : lots_) {
+    lot.first = all;
+    lot.end_of_last_turn += all;
+    all += lot.count;
+  }
+  judged.beside = all - judged.points.size();
+  judged.far = lots_.back().count;
   judged.points.resize(all);
   judged.heights.resize(all);
   judged.roles.resize(all);
   judged.places.resize(all);
-  judged.beside = beside_.size();
-  object_of_.assign(own, kNone);
+  judged.together.resize(judged.beside);
   object_of_.resize(all);
-  end_of_last_turn_ += own;
-  std::size_t i = 0;
-  for (const Cloud& cloud : clouds_) {
-    const Eigen::Vector3f moved = (cloud.origin - judged.odom_from_points.translation()).cast<float>();
-    addSome(beside_.data() + i, cloud.beside, moved, own + i, judged);
-    i += cloud.beside;
-  }
+  forEachBeside([&](const Cloud& cloud, const Kept* const* kept, std::size_t count, std::size_t entry) {
+    addSome(cloud, kept, count, entry, judged);
+  });
 }
 
-void PartsBeside::addSome(const Kept* const* kept, std::size_t count, const Eigen::Vector3f& moved, std::size_t to,
+void PartsBeside::addSome(const Cloud& cloud, const Kept* const* kept, std::size_t count, std::size_t to,
                           JudgedScan& judged) {
+  const Eigen::Vector3f moved = (cloud.origin - judged.odom_from_points.translation()).cast<float>();
   // Bytes may be anything: as members of vectors, these would be read again after each role that is written.
   Eigen::Vector3f* points = judged.points.data() + to;
   float* heights = judged.heights.data() + to;
   ClusterRole* roles = judged.roles.data() + to;
   Place* places = judged.places.data() + to;
   std::uint32_t* objects = object_of_.data() + to;
+  std::uint32_t* together = judged.together.data() + to - judged.own();
+  const std::uint32_t when = whenOf(cloud);  // where turns meet, what moves shows up twice: not as one
   for (std::size_t i = 0; i < count; ++i) {
     points[i] = kept[i]->point + moved;
     heights[i] = kept[i]->height;
     roles[i] = kept[i]->role;
     places[i] = kept[i]->place;
     objects[i] = kept[i]->object;
+    together[i] = kept[i]->object == kNone ? 0 : 2 * kept[i]->object + when;
   }
+}
+
+/// Entries of a segment are in the order of the scan.
+bool PartsBeside::Lot::holdsLastTurn(const Segment& segment) const {
+  const auto in_lot = std::lower_bound(segment.echoes.begin(), segment.echoes.end(), first);
+  return in_lot != segment.echoes.end() && *in_lot < end_of_last_turn;
 }
 
 void PartsBeside::relate(const JudgedScan& judged, Segments& segments) {
   if (!is_in_parts_) return;
   for (Segment& segment : segments) {
-    // In the order of the scan: those beside come last, and of these the ones of the turn before first.
     const auto beside = std::lower_bound(segment.echoes.begin(), segment.echoes.end(), judged.own());
-    segment.is_of_two_turns = beside != segment.echoes.end() && *beside < end_of_last_turn_;
+    const auto holds = [&](const Lot& lot) { return lot.holdsLastTurn(segment); };
+    segment.is_of_two_turns = std::any_of(lots_.begin(), lots_.end(), holds);
     segment.object = objects_[objectOf(beside, segment.echoes.end())].id;
   }
 }
@@ -268,6 +319,7 @@ std::uint32_t PartsBeside::placeOf(std::uint32_t id) {
     place = unused_.back();
     unused_.pop_back();
   }
+  objects_[place] = KeptObject();
   objects_[place].id = id;
   by_id_.insert(known, place);
   return place;
@@ -283,24 +335,27 @@ void PartsBeside::settle(const SightPixels& pixels, const Segments& segments, co
                          JudgedScan& judged) {
   if (!is_in_parts_) return;
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    const std::uint32_t object = placeOf(verdicts[i].object);
-    for (const std::uint32_t echo : segments[i].echoes) object_of_[echo] = object;
+    const std::uint32_t place = placeOf(verdicts[i].object);
+    for (const std::uint32_t echo : segments[i].echoes) object_of_[echo] = place;
+    KeptObject& object = objects_[place];
+    const std::size_t large = object.is_thinned ? large_ / kOneIn : large_;
+    object.is_thinned = !verdicts[i].moves() && segments[i].echoes.size() >= large;
   }
-  const std::size_t own = judged.own();
-  std::size_t i = 0;
-  for (Cloud& cloud : clouds_) {
-    for (const std::size_t end = i + cloud.beside; i < end; ++i) {
-      const std::uint32_t object = object_of_[own + i];
-      if (beside_[i]->object == object) continue;
-      beside_[i]->object = object;
+  forEachBeside([&](Cloud& cloud, Kept** kept, std::size_t count, std::size_t entry) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t object = object_of_[entry + i];
+      if (kept[i]->object == object) continue;
+      kept[i]->object = object;
       list(cloud, object);
     }
-  }
+  });
+  const std::size_t own = judged.own();
   judged.points.resize(own);
   judged.heights.resize(own);
   judged.roles.resize(own);
   judged.places.resize(own);
-  judged.beside = 0;
+  judged.together.clear();
+  judged.beside = judged.far = 0;
   keep(pixels, judged);
 }
 
@@ -316,7 +371,7 @@ void PartsBeside::keep(const SightPixels& pixels, const JudgedScan& judged) {
   cloud.turn = turn_;
   cloud.sensor = sensor_;
   cloud.origin = judged.odom_from_points.translation();
-  cloud.beside = 0;
+  cloud.in_lot = {};
   cloud.objects.clear();
   cloud.echoes.clear();
   const auto takes_part = [&](std::size_t i) {
@@ -364,12 +419,14 @@ void PartsBeside::reset() {
   is_in_parts_ = false;
 }
 
-double PartsBeside::bytesFor(double echoes) { return echoes * (sizeof(Kept) + sizeof(Kept*) + sizeof(std::uint32_t)); }
+double PartsBeside::bytesFor(double echoes) {
+  return echoes * (sizeof(Kept) + 2.0 * sizeof(Kept*) + 2.0 * sizeof(std::uint32_t));  // with JudgedScan::together
+}
 
 std::size_t PartsBeside::memoryBytes() const {
   std::size_t bytes =
-      beside_.capacity() * sizeof(Kept*) + mountings_.capacity() * sizeof(Eigen::Isometry3d) +
-      objects_.capacity() * sizeof(KeptObject) +
+      (lots_[0].echoes.capacity() + lots_[1].echoes.capacity()) * sizeof(Kept*) +
+      mountings_.capacity() * sizeof(Eigen::Isometry3d) + objects_.capacity() * sizeof(KeptObject) +
       (object_of_.capacity() + by_id_.capacity() + unused_.capacity() + counted_.capacity()) * sizeof(std::uint32_t);
   for (const auto* clouds : {&clouds_, &spares_}) {
     bytes += clouds->capacity() * sizeof(Cloud);

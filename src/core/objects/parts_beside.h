@@ -18,6 +18,7 @@ struct PartsBesideOptions {
   float touch = 2.83F;  ///< echoes in cells of clusters that touch lie no more of their edges apart
   float touch_angle = 0.015F;  ///< and so much more: cells touch from farther away with the distance [rad]
   float reach = 15.0F;         ///< never more, which is enough from 3.5 m on; up to 85 [deg]
+  std::size_t large = 500;     ///< objects of so many echoes that do not move are thinned where they touch nothing new
 };
 
 /// The echoes of a turn's earlier parts that lie beside its newest part. The object step sees both: then a segment is
@@ -28,8 +29,8 @@ class PartsBeside {
   explicit PartsBeside(double cell, const PartsBesideOptions& options = {});
 
   /// Adds to the entries of a cloud those of the same sensor's earlier clouds of the turn that lie beside it: with an
-  /// object that reaches there, all of its echoes. `turns` has taken the cloud, whose own places need not be judged
-  /// yet.
+  /// object that reaches there all of its echoes, or if it is large and stands still, one in so many. `turns` has taken
+  /// the cloud, whose own places need not be judged yet.
   void join(TurnPart part, const Scan& scan, const Turns& turns, JudgedScan& judged);
 
   /// Says which object each segment goes on with, and whether more of it may come.
@@ -58,22 +59,38 @@ class PartsBeside {
     ClusterRole role;
     Place place;
   };
+  /// Entries of the judged scan, cloud by cloud.
+  struct Lot {
+    std::vector<Kept*> echoes;  ///< the first ones of these:
+    std::size_t count = 0;
+    std::size_t first = 0;             ///< entry
+    std::size_t end_of_last_turn = 0;  ///< entry behind the last one of the turn before
+    bool holdsLastTurn(const Segment& segment) const;
+  };
   /// Those of one cloud.
   struct Cloud {
     std::uint32_t turn = 0;
     std::uint8_t sensor = 0;
     Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of its points frame, in odometry [m]
-    std::size_t beside = 0;                            ///< entries of the judged scan
+    std::array<std::size_t, 2> in_lot{};               ///< how many of its echoes are in each
     ColumnSet columns;                                 ///< with an echo
     std::vector<std::uint32_t> objects;                ///< that any echo belongs to; some may have lost their last one
     std::vector<Kept> echoes;
   };
+  /// How an object's echoes come that are not near themselves.
+  enum Coming : std::uint8_t {
+    kNot = 0,
+    kAsNear = 1,   ///< what of it is near is of the other turn, or connects nothing
+    kAsFar = 2,    ///< they go with what is near, and need not be connected again
+    kThinned = 4,  ///< the same for one in so many
+  };
   /// What echoes belong to.
   struct KeptObject {
-    std::uint32_t id = 0;      ///< of the track
-    bool is_beside = false;    ///< reaches what the part looks at
-    bool is_used = false;      ///< a cloud has it
-    std::uint32_t echoes = 0;  ///< of one segment
+    std::uint32_t id = 0;           ///< of the track
+    std::array<Coming, 2> comes{};  ///< how its echoes do: those of the turn before, those of this one
+    bool is_thinned = false;        ///< large, and not moving
+    bool is_used = false;           ///< a cloud has it
+    std::uint32_t echoes = 0;       ///< of one segment
   };
 
   void beginTurn(TurnPart part);
@@ -86,9 +103,12 @@ class PartsBeside {
   bool isNear(const Kept& kept) const { return away_[kept.direction.column()] <= kept.reach; }
   void findObjectsBeside();
   void chooseBeside();
+  void chooseBeside(Cloud& cloud);
   void addKept(JudgedScan& judged);
-  void addSome(const Kept* const* kept, std::size_t count, const Eigen::Vector3f& moved, std::size_t to,
-               JudgedScan& judged);
+  void addSome(const Cloud& cloud, const Kept* const* kept, std::size_t count, std::size_t to, JudgedScan& judged);
+  template <class Visit>
+  void forEachBeside(Visit&& visit);
+  std::uint32_t whenOf(const Cloud& cloud) const { return cloud.turn == turn_ ? 1 : 0; }
   Cloud& newCloud();
   void keep(const SightPixels& pixels, const JudgedScan& judged);
   std::uint8_t reachOf(const Eigen::Vector3f& from_sensor) const;
@@ -97,11 +117,13 @@ class PartsBeside {
   std::uint32_t placeOf(std::uint32_t id);
 
   static constexpr std::uint32_t kNone = 0;  ///< of objects_
+  static constexpr std::size_t kOneIn = 4;   ///< of so many echoes one is left where objects are thinned
 
   int reach_, border_;  ///< columns
   float touch_;         ///< columns that echoes which touch lie apart, 1 m away from the sensor,
   float beyond_touch_;  ///< and as many more anywhere
   float farthest_;      ///< the same as reach_
+  std::size_t large_;   ///< echoes
   std::uint32_t turn_ = 0;
   std::uint8_t sensor_ = 0;                   ///< of the newest part
   bool is_in_parts_ = false;                  ///< the turn
@@ -113,10 +135,9 @@ class PartsBeside {
   std::vector<std::uint32_t> unused_;         ///< of objects_
   std::array<std::uint8_t, SightPixels::kColumns> away_{};  ///< columns from what the part looks at
   ColumnSet near_;                                          ///< within reach of it
-  std::vector<Kept*> beside_;                               ///< by entry of the judged scan, from its own on
-  std::vector<std::uint32_t> object_of_;                    ///< by entry of the judged scan: of objects_
-  std::size_t end_of_last_turn_ = 0;                        ///< entries of the judged scan from its own to there
-  std::vector<std::uint32_t> counted_;                      ///< of objects_: those in one segment
+  std::array<Lot, 2> lots_;               ///< beside: what may touch the part, and what is far but goes with that
+  std::vector<std::uint32_t> object_of_;  ///< by entry of the judged scan: of objects_
+  std::vector<std::uint32_t> counted_;    ///< of objects_: those in one segment
 };
 
 }  // namespace donex

@@ -21,7 +21,9 @@ class Segmenter {
   Segmenter(double reach, const ObjectConfig& config, const SegmenterOptions& options = {});
 
   /// Finds the scan's clusters. What their places say is not asked yet; segment() follows.
-  void connect(const JudgedScan& scan) { clusters_.connect(scan.sensor, scan.points, scan.heights, scan.roles); }
+  void connect(const JudgedScan& scan) {
+    clusters_.connect(scan.sensor, scan.points, scan.heights, scan.roles, {scan.own(), scan.far, scan.together});
+  }
 
   /// The scan's clusters, one object each as far as can be told:
   ///  - what is predicted and has run into something larger is cut out of it;

@@ -225,6 +225,27 @@ TEST(Clusters, HeightAndReachEnd) {
   EXPECT_EQ(clustersOf(echoes, 20.0, kOptions), (std::vector<int>{0, none, none, 1, none, none, none}));
 }
 
+TEST(Clusters, WhatIsKnownToBelongTogetherIsOne) {
+  Echoes echoes;
+  echoes.add(5.0F, 0.0F, 1.0F);
+  echoes.add(9.1F, 9.0F, 1.0F);
+  echoes.add(5.3F, 0.0F, 1.0F);  // from here on there are numbers
+  echoes.add(5.0F, 3.0F, 1.0F);
+  echoes.add(5.0F, -3.0F, 1.0F);
+  echoes.add(9.0F, 9.0F, 1.0F);  // and from here on they are far
+  echoes.add(5.0F, -3.1F, 1.0F);
+  Clusters clusters(60.0, kOptions);
+  clusters.connect(echoes.sensor, echoes.points, echoes.heights, echoes.roles, {2, 2, {2, 2, 0, 2, 3}});
+  EXPECT_EQ(clusters.of(2), clusters.of(0)) << "it touches";
+  EXPECT_EQ(clusters.of(3), clusters.of(0)) << "it is known";
+  EXPECT_EQ(clusters.of(5), clusters.of(0)) << "it is far";
+  EXPECT_NE(clusters.of(1), clusters.of(0)) << "what is far connects nothing";
+  EXPECT_NE(clusters.of(4), clusters.of(0)) << "nothing is known of it";
+  EXPECT_EQ(clusters.of(6), Clusters::kNone) << "nothing near has its number";
+  EXPECT_EQ(clusters.echoesIn(clusters.of(0)), 4U);
+  EXPECT_EQ(clusters.members().size(), 6U);
+}
+
 TEST(Clusters, EachScanStartsAnew) {
   Echoes many, few;
   for (int i = 0; i < 50; ++i) many.add(static_cast<float>(i % 7), static_cast<float>(i), 1.0F);

@@ -1,4 +1,5 @@
 // Echoes of a turn's earlier parts beside the newest one: what a border cuts is one object.
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -23,6 +24,7 @@ Scan arc(double begin, double end, double stamp = 0.0, double radius = 10.0) {
 /// What the detector does around the object step; clouds come one after the other.
 class Parts {
  public:
+  explicit Parts(const PartsBesideOptions& options = {}) : parts(0.3, options) {}
   /// The part with what lies beside it.
   const JudgedScan& join(const Scan& scan) {
     judged = JudgedScan();
@@ -40,12 +42,12 @@ class Parts {
     return judged;
   }
   /// One segment of all entries, which is the object `id`.
-  const Segment& settle(std::uint32_t id) {
+  const Segment& settle(std::uint32_t id, Proof proof = Proof::kNone) {
     segments.clear();
     Segment& segment = segments.add(judged.points.size());
     for (std::uint32_t i = 0; i < judged.points.size(); ++i) segment.echoes.push_back(i);
     parts.relate(judged, segments);
-    parts.settle(pixels_, segments, {Verdict{Proof::kNone, false, id}}, judged);
+    parts.settle(pixels_, segments, {Verdict{proof, false, id}}, judged);
     return segments[0];
   }
   void take(const Scan& scan, std::uint32_t id = 0) {
@@ -53,7 +55,7 @@ class Parts {
     settle(id);
   }
 
-  PartsBeside parts{0.3};
+  PartsBeside parts;
   JudgedScan judged;
   Segments segments;
   TurnPart part = TurnPart::kWhole;
@@ -74,8 +76,8 @@ TEST(PartsBeside, WholeScansHaveNothingBeside) {
 }
 
 /// After a turn that is not known to be in parts and one that is, stamps up to 0.2 s.
-Parts afterTwoTurnsInQuarters(double radius = 10.0) {
-  Parts parts;
+Parts afterTwoTurnsInQuarters(double radius = 10.0, const PartsBesideOptions& options = {}) {
+  Parts parts(options);
   for (int q = 0; q < 8; ++q) parts.take(arc(90.0 * (q % 4), 90.0 * (q % 4) + 90.0, 0.025 * q, radius));
   return parts;
 }
@@ -115,9 +117,27 @@ TEST(PartsBeside, AnObjectThatReachesThereComesWhole) {
   parts.take(arc(0.0, 90.0, 0.2), 7);
   // Its 90 echoes, with those of the turn before that were one segment with them, and those to the other side.
   EXPECT_NEAR(static_cast<double>(parts.join(arc(90.0, 180.0, 0.225)).beside), 102.0, 3.0);
+  // Six degrees of it may touch the part. The rest goes with them: their clusters are theirs.
+  EXPECT_NEAR(static_cast<double>(parts.judged.far), 84.0, 3.0);
+  const auto& together = parts.judged.together;
+  EXPECT_EQ(std::count(together.end() - static_cast<std::ptrdiff_t>(parts.judged.far), together.end(), 0U), 0);
   EXPECT_EQ(parts.settle(7).object, 7U);
   parts.join(arc(180.0, 270.0, 0.25));
   EXPECT_EQ(parts.settle(8).object, 7U) << "the echoes of both parts belong to it";
+}
+
+TEST(PartsBeside, OfALargeObjectThatStandsAFewEchoesStandForThoseFarAway) {
+  const auto far = [](std::size_t large, Proof proof) {
+    PartsBesideOptions options;
+    options.large = large;
+    Parts parts = afterTwoTurnsInQuarters(10.0, options);
+    parts.join(arc(0.0, 90.0, 0.2));
+    parts.settle(7, proof);
+    return static_cast<double>(parts.join(arc(90.0, 180.0, 0.225)).far);
+  };
+  EXPECT_NEAR(far(200, Proof::kNone), 84.0, 3.0);
+  EXPECT_NEAR(far(50, Proof::kNone), 21.0, 2.0);
+  EXPECT_NEAR(far(50, Proof::kEnteredFree), 84.0, 3.0) << "it moves";
 }
 
 TEST(PartsBeside, ObjectsAreToldApartHoweverManyCome) {
