@@ -187,12 +187,18 @@ void PartsBeside::chooseBeside() {
     cloud.in_lot = {};
     if (cloud.sensor != sensor_) continue;
     const bool may_be_near = (cloud.columns & near_).any();
-    const auto comes = [&](std::uint32_t object) { return objects_[object].comes[whenOf(cloud)] != kNot; };
-    if (may_be_near || std::any_of(cloud.objects.begin(), cloud.objects.end(), comes)) chooseBeside(cloud);
+    const auto whole = [&](std::uint32_t object) { return (objects_[object].comes[whenOf(cloud)] & ~kThinned) != 0; };
+    const auto thinned = [&](std::uint32_t object) { return objects_[object].comes[whenOf(cloud)] == kThinned; };
+    if (may_be_near || std::any_of(cloud.objects.begin(), cloud.objects.end(), whole)) {
+      chooseBeside(cloud, 1);
+    } else if (std::any_of(cloud.objects.begin(), cloud.objects.end(), thinned)) {
+      chooseBeside(cloud, kOneIn);
+    }
   }
 }
 
-void PartsBeside::chooseBeside(Cloud& cloud) {
+/// Of one in so many of its echoes.
+void PartsBeside::chooseBeside(Cloud& cloud, std::size_t one_in) {
   std::array<Kept**, 2> begin, next;
   for (std::size_t k = 0; k < lots_.size(); ++k) {
     const std::size_t most = lots_[k].count + cloud.echoes.size();
@@ -203,7 +209,7 @@ void PartsBeside::chooseBeside(Cloud& cloud) {
   static_assert(kAsNear == 1 && kAsFar == 2 && kThinned == 4);
   const std::uint32_t when = whenOf(cloud);
   const KeptObject* objects = objects_.data();
-  for (std::size_t i = 0; i < cloud.echoes.size(); ++i) {
+  for (std::size_t i = 0; i < cloud.echoes.size(); i += one_in) {
     Kept& kept = cloud.echoes[i];
     const int near = static_cast<int>(isNear(kept)), comes = objects[kept.object].comes[when];
     *next[0] = *next[1] = &kept;

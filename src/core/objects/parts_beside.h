@@ -103,7 +103,7 @@ class PartsBeside {
   bool isNear(const Kept& kept) const { return away_[kept.direction.column()] <= kept.reach; }
   void findObjectsBeside();
   void chooseBeside();
-  void chooseBeside(Cloud& cloud);
+  void chooseBeside(Cloud& cloud, std::size_t one_in);
   void addKept(JudgedScan& judged);
   void addSome(const Cloud& cloud, const Kept* const* kept, std::size_t count, std::size_t to, JudgedScan& judged);
   template <class Visit>
