@@ -28,15 +28,20 @@ def scaled(poses, factor):
     return changed
 
 
+def begin_in(poses):
+    """BEGIN, or half-way in a shorter drive."""
+    return BEGIN if len(poses) > BEGIN else len(poses) // 2
+
+
 def frozen(poses):
-    changed = poses.copy()
-    changed[BEGIN:BEGIN + FROZEN] = poses[BEGIN]
+    changed, begin = poses.copy(), begin_in(poses)
+    changed[begin:begin + FROZEN] = poses[begin]
     return changed
 
 
 def jumped(poses):
-    changed = poses.copy()
-    changed[BEGIN:, :2, 3] += poses[BEGIN, :2, :2] @ (0.0, 0.5)
+    changed, begin = poses.copy(), begin_in(poses)
+    changed[begin:, :2, 3] += poses[begin, :2, :2] @ (0.0, 0.5)
     return changed
 
 

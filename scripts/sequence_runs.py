@@ -1,5 +1,6 @@
 """Runs donex_sequence and reads what it prints; for the scripts that make tables of it."""
 import dataclasses
+import itertools
 import pathlib
 import re
 import shutil
@@ -38,15 +39,14 @@ def program(name="donex_sequence"):
     return found
 
 
-def simulated(folder, scenes, seeds):
-    """Simulated drives of 5 s, written where they are missing."""
-    for scene in scenes:
-        for seed in seeds:
-            drive = folder / f"{scene}_{seed}"
-            if not (drive / "times.txt").exists():
-                subprocess.run([program("donex_simulate"), scene, drive, "--seed", seed, "--duration", "5"], check=True,
-                               stdout=subprocess.DEVNULL)
-            yield drive
+def simulated(folder, scenes, seeds, beams=("0",)):
+    """Simulated drives of 5 s, written where they are missing; 0 beams: as many as suit the scene."""
+    for scene, seed, count in itertools.product(scenes, seeds, beams):
+        drive = folder / (f"{scene}_{seed}" + (f", {count} beams" if count != "0" else ""))
+        if not (drive / "times.txt").exists():
+            subprocess.run([program("donex_simulate"), scene, drive, "--seed", seed, "--beams", count, "--duration", "5"],
+                           check=True, stdout=subprocess.DEVNULL)
+        yield drive
 
 
 def label(sequence, arguments=(), settings=()):

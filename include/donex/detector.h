@@ -2,11 +2,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "donex/config.h"
 #include "donex/explanation.h"
 #include "donex/grid_outline.h"
+#include "donex/measured_sensor.h"
 #include "donex/object.h"
 #include "donex/proof.h"
 #include "donex/scan.h"
@@ -48,6 +50,9 @@ class Detector {
   /// Of this turn so far or of the one before, whichever has more; 1 where clouds are whole scans, or the method takes
   /// them for such.
   virtual std::size_t cloudsPerTurn() const { return 1; }
+
+  /// The sensor of the last scan, as its scans so far show it; none where the method does not look, or not yet.
+  virtual std::optional<MeasuredSensor> measuredSensor() const { return std::nullopt; }
 
   /// Whether the last scan holds hardly any ground although the method looks for it.
   virtual bool lacksGround() const { return false; }

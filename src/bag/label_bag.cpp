@@ -94,6 +94,7 @@ PipelineEvents Labeler::events() {
   events.reading_found = as("meaning of the echo times");
   events.not_deskewed = as("clouds de-skewed by");
   events.remarked = [this](CloudRemark kind, const std::string& text) { remark(describe(kind), text); };
+  events.sensor_measured = [this](const std::string& text) { summary_.sensor = text; };
   events.odometry_completed = as("ego motion");
   events.strange_times = as("clouds not de-skewed");
   return events;
@@ -121,7 +122,7 @@ void Labeler::take(const LabeledScan& scan) {
   }
 }
 
-/// Whole scans at 10 Hz, for the warm-up: parts of turns, and clouds of several sensors, are as many as their time says.
+/// Whole scans at 10 Hz, for the warm-up: parts of turns, and several sensors' clouds, are as many as their time says.
 std::size_t Labeler::scansBefore(double stamp) {
   constexpr double kScan = 0.1;     // [s]
   constexpr double kJitter = 0.05;  // of a scan: stamps that come a little early

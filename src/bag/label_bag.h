@@ -24,6 +24,7 @@ struct LabelBagOptions {
 struct LabelBagSummary {
   std::string points, odom;  ///< the topics in use; no odom where the configuration needs none
   std::string motion;        ///< where the ego motion comes from, and why
+  std::string sensor;        ///< as its first scans show it; empty where nothing did
   std::size_t messages = 0;  ///< of the input
   std::size_t echoes = 0;
   PipelineCounts counts;

@@ -66,6 +66,7 @@ void report(const LabelBagSummary& summary) {
   const PipelineCounts& counts = summary.counts;
   fmt::print("{} messages; clouds {}, odometry {}\n", summary.messages, summary.points,
              summary.odom.empty() ? "not needed" : summary.odom);
+  if (!summary.sensor.empty()) fmt::print("the sensor: {}\n", summary.sensor);
   fmt::print("ego motion: {}\n", summary.motion);
   if (!summary.check.empty()) fmt::print("{}\n", summary.check);
   if (counts.jumps > 0) fmt::print("the odometry jumped {} times, and the grid was forgotten\n", counts.jumps);

@@ -189,6 +189,8 @@ void Diagnostics::addCounts(DiagnosticStatusWrapper& status) const {
     status.add(describe(kind), remarkOf(pipeline_.remarks(), kind));
   }
   status.add("last drop", last_drop_);
+  const std::optional<MeasuredSensor> sensor = pipeline_.detector().measuredSensor();
+  status.add("the sensor", sensor ? describe(*sensor) : "not measured");
   status.add("de-skewed by", pipeline_.deskewedBy());
   status.add("unit of the echo times", found_unit_);
   status.add("last echo times not used", last_strange_times_);

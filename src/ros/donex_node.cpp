@@ -239,6 +239,7 @@ PipelineEvents DonexNode::Implementation::events() {
     ROS_WARN_STREAM_NAMED("donex", describe(kind) << ": " << text);
   };
   events.motion_chosen = [](const std::string& text) { ROS_INFO_STREAM_NAMED("donex", text); };
+  events.sensor_measured = [](const std::string& text) { ROS_INFO_STREAM_NAMED("donex", "the sensor: " << text); };
   events.odometry_completed = [](const std::string& text) { ROS_INFO_STREAM_NAMED("donex", text); };
   events.flooded = [this](const std::string& text) {
     const std::string full = text + ", " + diagnostics_.odometryText();

@@ -240,6 +240,7 @@ void Pipeline::label(const WaitingCloud& waiting, const ScanMotion& motion) {
   scan_.stamp = stamp.toSec();
   watchFlood();
   remark();
+  tellSensor();
   motion_.learn(labels_.dynamic);
   order_.labeled(waiting.cloud->header);
   events_.labeled({waiting.cloud, waiting.layout, scan_, labels_, *detector_, motion.odom_frame, given_.odomFromWorld(),
@@ -323,6 +324,13 @@ void Pipeline::remark() {
     remarked_[kind] = true;
     if (events_.remarked) events_.remarked(static_cast<CloudRemark>(kind), remarks_[kind]);
   }
+}
+
+void Pipeline::tellSensor() {
+  if (is_sensor_told_) return;
+  const std::optional<MeasuredSensor> sensor = detector_->measuredSensor();
+  is_sensor_told_ = sensor.has_value();
+  if (sensor && events_.sensor_measured) events_.sensor_measured(describe(*sensor));
 }
 
 void Pipeline::finish() {

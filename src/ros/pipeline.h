@@ -61,6 +61,8 @@ struct PipelineEvents {
   std::function<void(const std::string& text)> unit_found = nullptr;
   /// The same of what these times count from, told by the scans; may be left empty.
   std::function<void(const std::string& text)> reading_found = nullptr;
+  /// What the sensor is like, as its first scans show it; may be left empty.
+  std::function<void(const std::string& text)> sensor_measured = nullptr;
   /// The odometry never leaves its plane, and height, roll and pitch come from the scans; may be left empty.
   std::function<void(const std::string& text)> odometry_completed = nullptr;
   /// There is nothing to de-skew the clouds by, and why; when that changes; may be left empty.
@@ -150,6 +152,7 @@ class Pipeline {
   void label(const WaitingCloud& waiting, const ScanMotion& motion);
   void moveToOrigin();
   void remark();
+  void tellSensor();
   Eigen::Vector3d origin() const { return {config_.cloud.origin_x, config_.cloud.origin_y, config_.cloud.origin_z}; }
   void refuse(OdometryRefusal refusal, const std::string& text);
   void drop(DropReason reason, const std::string& text);
@@ -165,6 +168,7 @@ class Pipeline {
   std::shared_ptr<Detector> detector_;
   EchoClocks clocks_;
   bool watched_ = false;
+  bool is_sensor_told_ = false;
   PipelineCounts counts_;
   CloudOrder order_;
   std::deque<WaitingCloud> waiting_;  // by stamp

@@ -92,7 +92,7 @@ class PipelineRig {
 
   tf2::BufferCore tf;
   std::vector<Labeled> labeled;
-  std::vector<std::string> drops, refusals, forgotten, strange_times, not_deskewed, remarks, completed;
+  std::vector<std::string> drops, refusals, forgotten, strange_times, not_deskewed, remarks, completed, sensors;
   Pipeline pipeline;
 
  private:
@@ -109,6 +109,7 @@ class PipelineRig {
     events.strange_times = [this](const std::string& text) { strange_times.push_back(text); };
     events.not_deskewed = [this](const std::string& text) { not_deskewed.push_back(text); };
     events.odometry_completed = [this](const std::string& text) { completed.push_back(text); };
+    events.sensor_measured = [this](const std::string& text) { sensors.push_back(text); };
     events.remarked = [this](CloudRemark, const std::string& text) { remarks.push_back(text); };
     return events;
   }

@@ -125,6 +125,7 @@ TEST_F(DiagnosticsTest, KeyFiguresAreNumbers) {
   EXPECT_NEAR(numberOf("odometry behind the clouds [s]"), 0.3, 1e-3);
   EXPECT_GE(numberOf("time a scan, p99 [ms]"), numberOf("time a scan, median [ms]"));
   EXPECT_GE(numberOf("memory of the process [MB]"), numberOf("memory of the grid [MB]"));
+  EXPECT_EQ(valueOf("the sensor"), "not measured") << "it has a single ring";
   EXPECT_EQ(numberOf("clouds in"), 6.0);
   EXPECT_EQ(numberOf("clouds labelled"), 5.0);
   EXPECT_EQ(numberOf("clouds waiting"), 1.0);

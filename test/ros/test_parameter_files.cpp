@@ -75,7 +75,7 @@ std::vector<std::string> namesIn(const std::filesystem::path& file) {
 
 /// Whatever a file for one sensor or one use repeats of default.yaml would stay behind when a default changes.
 TEST(ParameterFiles, FilesForOneUseNameOnlyWhatDiffersFromTheDefaults) {
-  std::vector<std::filesystem::path> files{kPackage + "/config/at_rest.yaml", kPackage + "/config/sparse.yaml"};
+  std::vector<std::filesystem::path> files{kPackage + "/config/at_rest.yaml"};
   for (const auto& entry : std::filesystem::directory_iterator(kPackage + "/config/sensors")) files.push_back(entry);
   ASSERT_GT(files.size(), 10U);
   const auto defaults = valuesOf({});

@@ -272,6 +272,26 @@ TEST(Pipeline, AtRestNothingElseIsNeeded) {
   EXPECT_TRUE(rig.labeled[1].odom_from_base.isApprox(Eigen::Isometry3d::Identity()));
 }
 
+TEST(Pipeline, TellsOnceWhatTheSensorIsLike) {
+  std::vector<Eigen::Vector3f> rings;
+  for (const float slope : {-0.1F, -0.07F, -0.04F, -0.01F}) {
+    for (int azimuth = 0; azimuth < 720; ++azimuth) {
+      const float angle = static_cast<float>(azimuth) * static_cast<float>(M_PI) / 360.0F;
+      rings.emplace_back(20.0F * std::cos(angle), 20.0F * std::sin(angle), 20.0F * slope);
+    }
+  }
+  PipelineRig rig(test::smallConfig(OdometrySource::kNone), false);
+  for (int k = 0; k < 5; ++k) {
+    const double stamp = 100.0 + 0.1 * k;
+    rig.pipeline.addCloud(test::plainCloud(rings, stamp), stamp);
+    rig.run(stamp);
+    EXPECT_EQ(rig.sensors.size(), k == 0 ? 0U : 1U);
+  }
+  ASSERT_EQ(rig.sensors.size(), 1U);
+  EXPECT_EQ(rig.sensors[0].rfind("beams 1.7", 0), 0U) << rig.sensors[0];
+  EXPECT_NE(rig.sensors[0].find("over 360 deg of azimuth, 10.0 turns a second"), std::string::npos) << rig.sensors[0];
+}
+
 TEST(Pipeline, MotionFromTf) {
   PipelineRig rig(test::smallConfig(OdometrySource::kTf));
   rig.tf.setTransform(test::transformAt(100.0, "odom", "base_link", 0.0), "test");

@@ -37,28 +37,37 @@ class Newness {
   }
   bool isRecent(int scan) const { return stampOf(scan) >= stamps_.back() - 0.35; }
   /// What earlier scans say of a place. With free evidence scans are weighed: free ones must be more than twice the
-  /// surfaces seen before the newest of them, and no fewer than the surfaces seen long ago.
+  /// surfaces seen before the newest of them, and no fewer than the surfaces seen long ago. How many are needed is
+  /// counted by how surely each looked there.
   struct Look {
-    bool free = false, surely = false, surface = false;
+    bool free = false, surely = false, coarsely = false, surface = false;
   };
   Look look(const SightView& before_scan, const Eigen::Vector3f& point, double since, bool settled) const {
     int needed = config_.free_evidence ? config_.free_scans : 1;
     if (settled && config_.careful_sight) needed = config_.settled_free_scans;
     const auto seen = before_scan.ask(point, since, std::numeric_limits<int>::max());
     Look look;
-    look.free = seen.free >= needed;
-    look.surely = look.free;
+    look.free = look.surely = seen.free >= needed;
     if (!config_.free_evidence) return look;
+    constexpr float kRounding = 1e-3F;
+    look.free = seen.certain_free + kRounding >= static_cast<float>(needed);
     if (seen.free <= 2 * seen.stale_surface || seen.free < seen.lasting_surface) look.free = false;
     look.surely = look.free && 2 * seen.free > seen.free + seen.stale_surface + seen.hidden;
+    look.coarsely = look.free && seen.fine_free + kRounding < static_cast<float>(needed);
     look.surface = !look.free && seen.lasting_surface > 0;
     return look;
   }
   /// Of a place that was never hit: without free evidence it is new.
   Look lookAtUnknown(const SightView& before_scan, const Eigen::Vector3f& point) const {
     if (now() == 1) return {};
-    if (!config_.free_evidence) return {true, true, false};
+    if (!config_.free_evidence) return {true, true};
     return look(before_scan, point, kBeforeEverything, false);
+  }
+
+  static Place placeOf(bool surely, bool coarsely) {
+    if (surely && coarsely) return Place::kSurelyCoarselyNew;
+    if (coarsely) return Place::kCoarselyNew;
+    return surely ? Place::kSurelyNew : Place::kNew;
   }
 
   EvidenceConfig config_;
@@ -95,18 +104,18 @@ class Newness3d : public Newness {
     if (!isYoung(state.birth, state.was_free)) return Place::kSettled;
     if (state.at_surface) return Place::kAtSurface;
     if (!state.was_free) return Place::kUnobserved;
-    return state.surely ? Place::kSurelyNew : Place::kNew;
+    return placeOf(state.surely, state.coarsely);
   }
 
  private:
   struct State {
     int birth = kNever, last_hit = kNever;
-    bool was_free = false, surely = false, at_surface = false;
+    bool was_free = false, surely = false, coarsely = false, at_surface = false;
   };
 
   State born(const Voxel& voxel, const Look& seen) const {
     const bool touches = seen.free && config_.neighbourhood && touchesSettled(voxel);
-    return {now(), now(), seen.free, seen.surely, touches || seen.surface};
+    return {now(), now(), seen.free, seen.surely, seen.coarsely, touches || seen.surface};
   }
 
   /// A surface that was hit lately.
@@ -159,6 +168,7 @@ class Newness2d : public Newness {
     if (range.empty()) (comes ? cell.arrived_birth : cell.found_birth) = now();
     range.extend(height);
     if (comes && seen.surely) cell.sure.push_back(height);
+    if (comes && seen.coarsely) cell.coarse.push_back(height);
     if (touches || seen.surface) cell.surfaces.push_back(height);
     return comes ? arrivedPlace(cell, height) : foundPlace(cell, height);
   }
@@ -169,6 +179,7 @@ class Newness2d : public Newness {
     HeightRange settled, arrived, found;
     std::vector<float> surfaces;  ///< heights in `found` that belonged to a surface
     std::vector<float> sure;      ///< heights in `arrived` that had surely been free
+    std::vector<float> coarse;    ///< ... that only beams far apart had seen free
     int arrived_birth = kNever, found_birth = kNever;
     std::vector<int> hits;  ///< scans
   };
@@ -179,6 +190,7 @@ class Newness2d : public Newness {
       cell.settled.extend(cell.arrived);
       cell.arrived = HeightRange{};
       cell.sure.clear();
+      cell.coarse.clear();
     }
     if (!cell.found.empty() && !isYoung(cell.found_birth, false)) {
       cell.settled.extend(cell.found);
@@ -187,12 +199,13 @@ class Newness2d : public Newness {
     }
   }
 
-  /// Between the lowest and the highest that was found at a surface everything is that surface; so for what was sure.
+  /// Between the lowest and the highest that was found at a surface everything is that surface; so for what was sure or
+  /// coarse.
   static Place foundPlace(const Cell& cell, float height) {
     return isAmong(cell.surfaces, height) ? Place::kAtSurface : Place::kUnobserved;
   }
   static Place arrivedPlace(const Cell& cell, float height) {
-    return isAmong(cell.sure, height) ? Place::kSurelyNew : Place::kNew;
+    return placeOf(isAmong(cell.sure, height), isAmong(cell.coarse, height));
   }
   static bool isAmong(const std::vector<float>& heights, float height) {
     const auto [lowest, highest] = std::minmax_element(heights.begin(), heights.end());

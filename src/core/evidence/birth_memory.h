@@ -17,6 +17,7 @@ struct VoxelRecord {
   bool was_free = false;       ///< at its birth the place had been seen free
   bool at_surface = false;     ///< at its birth it touched established voxels, or scans had seen a surface there
   bool surely_free = false;    ///< at its birth most scans that knew of the place had seen it free
+  bool coarsely_free = false;  ///< at its birth only beams far apart had seen it free
 
   bool occupied() const { return birth != 0; }
 };

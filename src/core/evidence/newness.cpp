@@ -7,6 +7,7 @@ namespace donex {
 namespace {
 
 constexpr double kBeforeEverything = -std::numeric_limits<double>::infinity();
+constexpr float kRounding = 1e-3F;  // of sums of certainties
 constexpr int kAllScans = std::numeric_limits<int>::max();
 
 }  // namespace
@@ -41,19 +42,21 @@ double ScanClock::stampOf(std::uint32_t scan) const {
 
 PlaceBefore weigh(const EvidenceConfig& config, const SightView& before, const Eigen::Vector3f& point, double since,
                   bool known, bool settled, const WeighingOptions& options) {
-  if (!config.free_evidence && !known) return {true, true, false};  // the paper: never hit is new
+  if (!config.free_evidence && !known) return {true, true};  // the paper: never hit is new
   const int unsettled = config.free_evidence ? config.free_scans : 1;
   const int needed = settled && config.careful_sight ? config.settled_free_scans : unsettled;
   if (!config.free_evidence) {
     const bool was_free = before.ask(point, since, needed).free >= needed;
-    return {was_free, was_free, false};
+    return {was_free, was_free};
   }
   const SightView::Evidence seen = before.ask(point, since, kAllScans);
   // A surface that was seen before the last free scan did not come just now, and one that lasts did not at all.
   const bool outweighs = seen.free > options.stale_weight * seen.stale_surface && seen.free >= seen.lasting_surface;
   PlaceBefore place;
-  place.was_free = seen.free >= needed && outweighs;
+  const float enough = static_cast<float>(needed) - kRounding;
+  place.was_free = seen.certain_free >= enough && outweighs;
   place.surely_free = place.was_free && seen.free > seen.stale_surface + seen.hidden;
+  place.coarsely_free = place.was_free && seen.fine_free < enough;
   place.surface = !place.was_free && seen.lasting_surface > 0;
   return place;
 }
@@ -72,6 +75,7 @@ Place Newness3d::judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& 
       record.birth = clock.scan();
       record.was_free = place.was_free;
       record.surely_free = place.surely_free;
+      record.coarsely_free = place.coarsely_free;
       record.at_surface = place.surface || (place.was_free && config_.neighbourhood && touchesSettled(voxel, clock));
     }
     record.last_hit = clock.scan();
@@ -79,7 +83,7 @@ Place Newness3d::judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& 
   if (!clock.isYoung(record.birth, record.was_free)) return Place::kSettled;
   if (record.at_surface) return Place::kAtSurface;
   if (!record.was_free) return Place::kUnobserved;
-  return record.surely_free ? Place::kSurelyNew : Place::kNew;
+  return newPlace(record.surely_free, record.coarsely_free);
 }
 
 bool Newness3d::touchesSettled(const Index3& voxel, const ScanClock& clock) const {
@@ -118,7 +122,7 @@ void Newness2d::settle(Cell& cell, const ScanClock& clock) const {
   };
   settle_range(cell.arrived, cell.arrived_birth, true);
   settle_range(cell.found, cell.found_birth, false);
-  if (cell.arrived.empty()) cell.surely = HeightRange{};
+  if (cell.arrived.empty()) cell.surely = cell.coarsely = HeightRange{};
   if (cell.found.empty()) cell.at_surface = HeightRange{};
 }
 
@@ -154,6 +158,7 @@ Place Newness2d::judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& 
   if (range.empty()) birth = clock.scan();
   range.extend(height);
   if (comes && place.surely_free) cell.surely.extend(height);
+  if (comes && place.coarsely_free) cell.coarsely.extend(height);
   if (touches || place.surface) cell.at_surface.extend(height);
   return comes ? cell.placeInArrived(height) : cell.placeInFound(height);
 }

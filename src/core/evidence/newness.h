@@ -101,11 +101,12 @@ class Newness2d {
     HeightRange arrived;     ///< new
     HeightRange found;       ///< unobserved, or at a surface
     HeightRange surely;      ///< the part of `arrived` that had surely been free
+    HeightRange coarsely;    ///< the part of `arrived` that beams far apart had seen free
     HeightRange at_surface;  ///< the part of `found` that belonged to a surface when it was found
     std::uint32_t arrived_birth = 0, found_birth = 0;
     std::uint32_t last_hit = 0, hit_before = 0;  ///< scans
 
-    Place placeInArrived(float height) const { return surely.holds(height) ? Place::kSurelyNew : Place::kNew; }
+    Place placeInArrived(float height) const { return newPlace(surely.holds(height), coarsely.holds(height)); }
     Place placeInFound(float height) const { return at_surface.holds(height) ? Place::kAtSurface : Place::kUnobserved; }
   };
 
@@ -122,8 +123,9 @@ class Newness2d {
 /// What earlier scans say of a place that is hit now.
 struct PlaceBefore {
   bool was_free = false;
-  bool surely_free = false;  ///< most scans that knew anything of it saw it free
-  bool surface = false;      ///< not free: a surface was seen there for longer than anything takes to come
+  bool surely_free = false;    ///< most scans that knew anything of it saw it free
+  bool coarsely_free = false;  ///< free, but seen by beams so far apart that something low may have stood between them
+  bool surface = false;        ///< not free: a surface was seen there for longer than anything takes to come
 };
 
 struct WeighingOptions {

@@ -80,6 +80,7 @@ class EvidenceDetector : public Detector {
     enter(scan);
     const TurnPart part = sights_.arrive(scan, judged_.is_solid, workers_);
     judged_.continues_turn = part == TurnPart::kContinuing;
+    judged_.beams_apart = sights_.beamsApart();
     if (!judged_.continues_turn) clock_.begin(scan.stamp);
     workers_.both([&] { estimateGround(part); }, [&] { sights_.draw(scan, judged_.is_solid); });
     heightsAboveGround(part);
@@ -131,6 +132,7 @@ class EvidenceDetector : public Detector {
   }
 
   std::size_t cloudsPerTurn() const override { return sights_.turns().cloudsPerTurn(); }
+  std::optional<MeasuredSensor> measuredSensor() const override { return sights_.measured(); }
   bool lacksGround() const override { return lacks_ground_; }
 
   GridOutline outline() const override { return places_.window().outline(); }

@@ -13,6 +13,8 @@ EchoReason reasonOf(const JudgedScan& scan, std::size_t i, bool inside) {
   if (scan.roles[i] != ClusterRole::kConnects) return EchoReason::kGround;
   switch (scan.places[i]) {
     case Place::kNew:
+    case Place::kCoarselyNew:
+    case Place::kSurelyCoarselyNew:
     case Place::kSurelyNew: return EchoReason::kNewAlone;
     case Place::kAtSurface:
     case Place::kSettled: return EchoReason::kSettled;

@@ -89,8 +89,9 @@ int Clusters::cellAbove(int x_y) const {
 
 void Clusters::connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
                        const std::vector<float>& heights, const std::vector<ClusterRole>& roles, const Known& known,
-                       const Workers& workers) {
+                       double beams_apart, const Workers& workers) {
   constexpr std::size_t kJoinedTogether = 256;  // columns; far ones have more neighbours to look at
+  up_angle_ = std::max(options_.up_angle, options_.up_beams * beams_apart);
   fill(sensor, echoes, heights, roles, echoes.size() - known.far);
   const auto join_some = [&](std::size_t first, std::size_t last) {
     for (std::size_t column = first; column < last; ++column) join(static_cast<int>(column));
@@ -187,7 +188,7 @@ void Clusters::join(int column) {
 void Clusters::joinRun(const Column& here, const int* cells, int first_z, int last_z) {
   const double cells_away = std::hypot(here.x - width_ / 2, here.y - width_ / 2);
   const int across = std::max(1, static_cast<int>(std::ceil(cells_away * options_.across_angle)));
-  const int up = std::max(1, static_cast<int>(std::ceil(cells_away * options_.up_angle)));
+  const int up = std::max(1, static_cast<int>(std::ceil(cells_away * up_angle_)));
   const int last_near = std::min(last_z + up, layers_ - 1);
   const int first_x = std::max(here.x - across, 0), last_x = std::min(here.x + across, width_ - 1);
   const int first_y = std::max(here.y - across, 0), last_y = std::min(here.y + across, width_ - 1);

@@ -19,7 +19,10 @@ class Clusters {
     double cell = 0.3;           ///< edge of a cell [m]
     double height = 4.5;         ///< echoes higher above ground belong to no cluster [m]
     double across_angle = 0.01;  ///< echoes within this angle touch, horizontally: more than a sensor's step [rad]
-    double up_angle = 0.015;     ///< the same vertically [rad]
+    double up_angle = 0.015;     ///< the same vertically, at least [rad]
+    /// Of the angle between beams above one another: so much is touched vertically where that is more. With all of it
+    /// crowns of trees are connected with what parks beneath.
+    double up_beams = 0.7;
   };
 
   /// A square of `reach` [m] around the sensor.
@@ -32,15 +35,16 @@ class Clusters {
     const std::vector<std::uint32_t>& numbers;  ///< what has the same one is one cluster; 0: nothing is known
   };
 
-  /// `echoes` [m] in a frame whose z points up, `heights` above ground [m], one per echo.
+  /// `echoes` [m] in a frame whose z points up, `heights` above ground [m], one per echo. `beams_apart`: tangent of the
+  /// angle between beams above one another, as far as it is known.
   void connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
-               const std::vector<float>& heights, const std::vector<ClusterRole>& roles,
+               const std::vector<float>& heights, const std::vector<ClusterRole>& roles, double beams_apart = 0.0,
                const Workers& workers = Workers::alone()) {
-    connect(sensor, echoes, heights, roles, {echoes.size(), 0, {}}, workers);
+    connect(sensor, echoes, heights, roles, {echoes.size(), 0, {}}, beams_apart, workers);
   }
   void connect(const Eigen::Vector3f& sensor, const std::vector<Eigen::Vector3f>& echoes,
                const std::vector<float>& heights, const std::vector<ClusterRole>& roles, const Known& known,
-               const Workers& workers = Workers::alone());
+               double beams_apart = 0.0, const Workers& workers = Workers::alone());
 
   static constexpr int kNone = -1;
   /// Cluster of an echo, 0 to count() - 1, or kNone.
@@ -96,6 +100,7 @@ class Clusters {
   Options options_;
   float per_cell_;  ///< [1/m]
   int width_, layers_;
+  double up_angle_ = 0.0;            ///< of this scan [rad]
   bool is_shared_ = false;           ///< several threads join cells
   std::vector<int> column_at_;       ///< by x, y: number of the column, or kNone
   std::vector<Column> columns_;      ///< dense, in the order of their first echoes

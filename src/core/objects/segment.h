@@ -21,7 +21,7 @@ struct Segment {
 
   std::pmr::vector<std::uint32_t> echoes;  ///< indices into the scan
   int new_echoes = 0;
-  int surely_new_echoes = 0;  ///< of new_echoes
+  int surely_new_echoes = 0, coarsely_new_echoes = 0;  ///< of new_echoes
   int surface_echoes = 0;
   int settled_echoes = 0;
   float lowest = 0.0F;                          ///< height above ground [m]; 0 where no ground is known

@@ -16,7 +16,12 @@ bool SegmentRules::isNew(const Segment& segment) const {
   const bool enough = segment.new_echoes >= config_.min_echoes && !isTooLong(segment);
   const bool outweighs = fresh > config_.new_share * (fresh + segment.settled_echoes + segment.surface_echoes);
   const bool surely = segment.surely_new_echoes >= std::max<double>(config_.min_echoes, least);
-  return enough && outweighs && fresh > least && (surely || fresh >= options_.unsure_new_share * all);
+  const bool by_share = fresh > least && (surely || fresh >= options_.unsure_new_share * all);
+  return enough && outweighs && by_share && !fitsBetweenBeams(segment);
+}
+
+bool SegmentRules::fitsBetweenBeams(const Segment& segment) const {
+  return segment.extent().z() < options_.low && segment.coarsely_new_echoes > options_.most_coarse * segment.new_echoes;
 }
 
 bool SegmentRules::isNewOverhead(const Segment& segment, const Eigen::Vector3d& sensor) const {

@@ -7,14 +7,16 @@
 namespace donex {
 
 struct SegmentOptions {
-  double longest = 25.0;           ///< beyond: a wall, a hedge, or objects that touch [m]
-  double least_new_share = 0.15;   ///< of all echoes that must be new: less is the frayed edge of something that stands
-  double unsure_new_share = 0.5;   ///< of all echoes that must be new where they are not surely so
-  double overhead = 2.0;           ///< above ground: above people's heads [m]
-  double upright_ratio = 0.3;      ///< height by length: about that of a car
-  double thin_angle = 0.02;        ///< seen under less, it is no higher than one or two beams of any sensor [rad]
-  double thin_reach = 20.0;        ///< farther away beams are too sparse to tell [m]
-  double long_extent = 2.0;        ///< about what walking pace covers in the birth window [m]
+  double longest = 25.0;          ///< beyond: a wall, a hedge, or objects that touch [m]
+  double least_new_share = 0.15;  ///< of all echoes that must be new: less is the frayed edge of something that stands
+  double unsure_new_share = 0.5;  ///< of all echoes that must be new where they are not surely so
+  double low = 0.5;               ///< what is lower fits between beams [m]
+  double most_coarse = 0.5;    ///< of the new echoes of something low: with more that are so it may have stood before
+  double overhead = 2.0;       ///< above ground: above people's heads [m]
+  double upright_ratio = 0.3;  ///< height by length: about that of a car
+  double thin_angle = 0.02;    ///< seen under less, it is no higher than one or two beams of any sensor [rad]
+  double thin_reach = 20.0;    ///< farther away beams are too sparse to tell [m]
+  double long_extent = 2.0;    ///< about what walking pace covers in the birth window [m]
   double followed_distance = 1.5;  ///< farther from its predicted place a followed object is not looked for [m]
   double prediction_rim = 0.2;     ///< by which a predicted object's centre may leave the segment it is within [m]
   double other_view_share = 0.5;   ///< of the extent that another view of the same object may not show
@@ -33,8 +35,11 @@ class SegmentRules {
   /// More of it is settled than not.
   static bool isMostlySettled(const Segment& segment);
 
-  /// Enough of the segment is new, by number and against what is settled.
+  /// Enough of the segment is new, by number and against what is settled, and it cannot have stood between beams.
   bool isNew(const Segment& segment) const;
+
+  /// Something low that beams saw through which lay far apart there: a guard rail, a kerb.
+  bool fitsBetweenBeams(const Segment& segment) const;
 
   /// All that is new of it lies above people's heads and is no higher than a beam or two: an eave, a branch, a cable.
   /// `sensor` in the odometry frame.

@@ -33,7 +33,7 @@ void Segmenter::segment(const JudgedScan& scan, const Predictions& predictions, 
     }
   }
   if (!segments.removeIf(is_mixed)) return;
-  clusters_.connect(scan.sensor, scan.points, scan.heights, roles_, workers);
+  clusters_.connect(scan.sensor, scan.points, scan.heights, roles_, scan.beams_apart, workers);
   append(scan, segments, workers);
 }
 

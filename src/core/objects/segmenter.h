@@ -22,7 +22,8 @@ class Segmenter {
 
   /// Finds the scan's clusters. What their places say is not asked yet; segment() follows.
   void connect(const JudgedScan& scan) {
-    clusters_.connect(scan.sensor, scan.points, scan.heights, scan.roles, {scan.own(), scan.far, scan.together});
+    clusters_.connect(scan.sensor, scan.points, scan.heights, scan.roles, {scan.own(), scan.far, scan.together},
+                      scan.beams_apart);
   }
 
   /// The scan's clusters, one object each as far as can be told:

@@ -37,7 +37,7 @@ bool Trimmer::findParts(const JudgedScan& scan, const Segments& segments, const 
     for (const std::uint32_t echo : segments[i].echoes) roles_[echo] = scan.roles[echo];
   }
   if (!any) return false;
-  clusters_.connect(scan.sensor, scan.points, scan.heights, roles_, workers);
+  clusters_.connect(scan.sensor, scan.points, scan.heights, roles_, scan.beams_apart, workers);
   parts_.assign(static_cast<std::size_t>(clusters_.count()), Part{});
   for (std::size_t i = 0; i < segments.size(); ++i) {
     if (isTrimmed(segments[i], verdicts[i])) count(scan, segments[i]);

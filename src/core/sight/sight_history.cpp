@@ -1,15 +1,18 @@
 #include "core/sight/sight_history.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "core/grid/simd.h"
+#include "core/pi.h"
 
 namespace donex {
 namespace {
 
-constexpr double kSamePose = 1e-5;  // as isApprox has it: a part needs no new pixels
+constexpr double kSamePose = 1e-5;    // as isApprox has it: a part needs no new pixels
+constexpr double kGapOfBeams = 1.25;  // no two of them have exactly the same step
 
 }  // namespace
 
@@ -17,11 +20,45 @@ TurnPart SightHistory::arrive(const Scan& scan, const std::vector<std::uint8_t>&
   pixels_.project(scan.echoes, is_echo, workers);
   newest_mounting_ = scan.base_from_sensor;
   const TurnPart part = turns_.arrive(scan, pixels_, workers);
-  if (part == TurnPart::kContinuing) return part;
-  turn_began_ = scan.stamp;
-  keeps_turn_ = kept_.empty() || scan.stamp >= kept_.back().stamp + 0.9 * spacing_;
-  if (keeps_turn_) ++turn_;
+  if (part != TurnPart::kContinuing) beginTurn(scan.stamp);
   return part;
+}
+
+void SightHistory::beginTurn(double stamp) {
+  for (auto kept = kept_.rbegin(); keeps_turn_ && kept != kept_.rend() && kept->turn == turn_; ++kept) {
+    kept->image.measureBeams();
+  }
+  turn_lasted_ = stamp - turn_began_;
+  turn_began_ = stamp;
+  keeps_turn_ = kept_.empty() || stamp >= kept_.back().stamp + 0.9 * spacing_;
+  if (keeps_turn_) ++turn_;
+}
+
+/// Of the sensor whose cloud arrived last; nullptr before its first turn is over.
+const SightImage* SightHistory::newestMeasured() const {
+  const auto is_its = [&](const Kept& kept) {
+    return kept.image.beams().everywhere() > 0.0F && Turns::areOne(kept.base_from_sensor, newest_mounting_);
+  };
+  const auto newest = std::find_if(kept_.rbegin(), kept_.rend(), is_its);
+  return newest == kept_.rend() ? nullptr : &newest->image;
+}
+
+double SightHistory::beamsApart() const {
+  const SightImage* image = newestMeasured();
+  return image == nullptr ? 0.0 : static_cast<double>(image->beams().everywhere());
+}
+
+std::optional<MeasuredSensor> SightHistory::measured() const {
+  const SightImage* image = newestMeasured();
+  if (image == nullptr || !(turn_lasted_ > 0.0)) return std::nullopt;
+  const auto degrees = [](double tangent) { return std::atan(tangent) / kRadiansPerDegree; };
+  const auto elevation = [&](int row) {
+    return degrees((row + 0.5) * SightPixels::kRowHeight - SightPixels::kSteepest);
+  };
+  const BeamSpacing& beams = image->beams();
+  const double around = 360.0 * static_cast<double>(image->coveredColumns()) / SightPixels::kColumns;
+  return MeasuredSensor{degrees(beamsApart()), elevation(beams.span().lowest), elevation(beams.span().highest), around,
+                        1.0 / turn_lasted_};
 }
 
 void SightHistory::draw(const Scan& scan, const std::vector<std::uint8_t>& is_echo) {
@@ -30,7 +67,14 @@ void SightHistory::draw(const Scan& scan, const std::vector<std::uint8_t>& is_ec
   const Eigen::Isometry3d image_from_sensor = kept.sensor_from_odom * scan.odomFromSensor();
   const bool is_moved = !image_from_sensor.isApprox(Eigen::Isometry3d::Identity(), kSamePose);
   if (is_moved) in_image_.project(scan.echoes, is_echo, image_from_sensor.cast<float>());
-  kept.image.add(is_moved ? in_image_ : pixels_, reading_, workspace_);
+  kept.image.add(is_moved ? in_image_ : pixels_, readingOfNewest(), workspace_);
+}
+
+/// Beams that lie farther apart than any gap that was configured are neighbours all the same.
+SightImage::Reading SightHistory::readingOfNewest() const {
+  SightImage::Reading reading = reading_;
+  reading.largest_gap = std::max(reading.largest_gap, kGapOfBeams * beamsApart());
+  return reading;
 }
 
 /// The image of the scan's sensor in the present turn; where it has none yet its frame is that of the scan.
@@ -94,6 +138,7 @@ std::size_t SightHistory::countBefore() const {
 SightView SightHistory::view(std::size_t newest, const Eigen::Isometry3d& odom_from_points) const {
   SightView view;
   view.margin_ = margin_;
+  view.is_careful_ = reading_.careful;
   for (std::size_t i = newest; i-- > 0;) {
     view.add(kept_[i].stamp, sightOf(kept_[i], odom_from_points));
   }
@@ -164,8 +209,12 @@ DONEX_WIDE_LOOPS SightView::Evidence SightView::ask(const Eigen::Vector3f& point
     evidence.stale_surface += evidence.free > 0 ? is_surface : 0;
     evidence.lasting_surface += kept_[0].stamp - kept_[i].stamp >= Evidence::kApproach ? is_surface : 0;
     evidence.surface += is_surface;
-    evidence.free += sight == SightImage::Sight::kFree ? 1 : 0;
     evidence.hidden += sight == SightImage::Sight::kHidden ? 1 : 0;
+    if (sight != SightImage::Sight::kFree) continue;
+    const float apart = is_careful_ ? kept_[i].image->beamsApart(pixel) : 0.0F;
+    ++evidence.free;
+    evidence.certain_free += apart <= certainty_.gap ? 1.0F : std::max(certainty_.least, certainty_.gap / apart);
+    evidence.fine_free += apart <= certainty_.fine_gap ? 1.0F : certainty_.fine_gap / apart;
   }
   return evidence;
 }

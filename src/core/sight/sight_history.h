@@ -7,6 +7,7 @@
 
 #include "core/sight/sight_image.h"
 #include "core/sight/turns.h"
+#include "donex/measured_sensor.h"
 #include "donex/scan.h"
 
 namespace donex {
@@ -51,15 +52,25 @@ class ScanSight {
   float margin_ = 0.0F;  ///< [m]
 };
 
+/// How much it counts that a scan saw through a place: it did not look between two beams, and read carefully it says
+/// free there all the same. Places count fully up to where beams lie so far apart, and in proportion beyond.
+struct CertaintyOptions {
+  float gap = 0.4F;       ///< of an object: what moves is seldom lower [m]
+  float fine_gap = 0.2F;  ///< of what is as low as a voxel [m]
+  float least = 0.4F;     ///< of an object: places far away are not looked at by so many more scans
+};
+
 /// What the remembered turns saw, asked in points of the frame it was made for [m]. Valid until the history changes.
 class SightView {
  public:
   struct Evidence {
-    int free = 0;             ///< scans that saw through the place
-    int surface = 0;          ///< scans that saw a surface there
-    int hidden = 0;           ///< scans that saw something before it
-    int stale_surface = 0;    ///< of `surface`: before the newest scan that saw through
-    int lasting_surface = 0;  ///< of `surface`: at least kApproach before the newest scan
+    int free = 0;               ///< scans that saw through the place
+    float certain_free = 0.0F;  ///< `free`, where each counts by how surely it looked at the place
+    float fine_free = 0.0F;     ///< the same, where the place is as low as a voxel
+    int surface = 0;            ///< scans that saw a surface there
+    int hidden = 0;             ///< scans that saw something before it
+    int stale_surface = 0;      ///< of `surface`: before the newest scan that saw through
+    int lasting_surface = 0;    ///< of `surface`: at least kApproach before the newest scan
 
     /// What comes at walking pace is within the margin of a place for so long before it hits it [s].
     static constexpr double kApproach = 0.45;
@@ -96,6 +107,8 @@ class SightView {
   Placements placements_;
   std::size_t count_ = 0;
   float margin_ = 0.0F;  ///< [m]
+  bool is_careful_ = true;
+  CertaintyOptions certainty_;
 };
 
 /// Free evidence (algorithm: "Free evidence"): "never hit before" is not "was free before".
@@ -113,6 +126,10 @@ class SightHistory {
   /// The directions of the cloud that arrived last.
   const SightPixels& newest() const { return pixels_; }
   const Turns& turns() const { return turns_; }
+  /// Of the sensor whose cloud arrived last, from its newest turn that is over; none before.
+  std::optional<MeasuredSensor> measured() const;
+  /// Tangent of the angle between beams above one another, of the same sensor; 0 before.
+  double beamsApart() const;
   /// Takes what the cloud saw that arrived last. Turns before the present one may be asked at the same time.
   void draw(const Scan& scan, const std::vector<std::uint8_t>& is_echo);
   /// From now on what was drawn is asked, too. Views made before are no longer valid.
@@ -143,6 +160,9 @@ class SightHistory {
     SightImage image;
   };
 
+  void beginTurn(double stamp);
+  SightImage::Reading readingOfNewest() const;
+  const SightImage* newestMeasured() const;
   void forget(double until);
   void keepNoMoreThanAViewHolds();
   Kept& imageFor(const Scan& scan);
@@ -162,8 +182,9 @@ class SightHistory {
   SightPixels in_image_;  ///< of a part that was not seen from where its turn's image is
   SightImage::Workspace workspace_;
   Eigen::Isometry3d newest_mounting_ = Eigen::Isometry3d::Identity();
-  std::uint32_t turn_ = 0;   ///< of those that are kept
-  double turn_began_ = 0.0;  ///< [s]
+  std::uint32_t turn_ = 0;    ///< of those that are kept
+  double turn_began_ = 0.0;   ///< [s]
+  double turn_lasted_ = 0.0;  ///< the one before, until this one began [s]
   bool keeps_turn_ = false;
   std::vector<Kept> kept_;          ///< oldest first
   std::optional<Kept> drawn_;       ///< an image that the present cloud began

@@ -37,6 +37,7 @@ void SightImage::clear() {
   nearest_.clear();
   hit_.clear();
   covered_ = {};
+  beams_ = BeamSpacing();
 }
 
 void SightImage::add(const SightPixels& seen, const Reading& reading, Workspace& workspace) {
@@ -170,6 +171,10 @@ void SightImage::erodeAcross(int column, const std::vector<Range>& between, cons
 bool SightImage::looksAt(const Eigen::Vector3f& point) const {
   const SightPixels::Pixel pixel = SightPixels::of(point);
   return pixel.valid && covered_[static_cast<std::size_t>(pixel.column)] != 0;
+}
+
+std::size_t SightImage::coveredColumns() const {
+  return static_cast<std::size_t>(std::count(covered_.begin(), covered_.end(), 1));
 }
 
 double SightImage::answerBytes() { return static_cast<double>(kPixels * sizeof(Range)); }

@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include "core/sight/beam_spacing.h"
 #include "core/sight/sight_pixels.h"
 
 namespace donex {
@@ -47,6 +48,14 @@ class SightImage {
   /// Adds what a cloud saw, given in the image's own frame. A cloud may be any part of what the sensor sees: directions
   /// that no cloud covers say nothing, and parts that are added one by one make the same image as all of them at once.
   void add(const SightPixels& seen, const Reading& reading, Workspace& workspace);
+
+  /// The turn is over: how far apart its beams lie is known from now on. While single lines of sight are asked.
+  void measureBeams() { beams_.measure(hit_, first_row_, rows_); }
+  const BeamSpacing& beams() const { return beams_; }
+  /// Columns that anything came back from, or beside one.
+  std::size_t coveredColumns() const;
+  /// How far apart the two beams lie that a place is between [m]; 0 before they are measured.
+  float beamsApart(const SightPixels::Pixel& pixel) const { return pixel.range * beams_.at(pixel.row); }
 
   /// Whether anything came back from about the direction of a point of the image's frame [m].
   bool looksAt(const Eigen::Vector3f& point) const;
@@ -99,7 +108,8 @@ class SightImage {
   int first_row_ = 0, rows_ = 0;  ///< the part of the image that the sensor covers
   std::vector<Range> nearest_;    ///< by column, then row
   std::vector<Range> hit_;        ///< the same, of single lines of sight
-  Columns covered_{};             ///< 1 where an echo came back, or in a column beside
+  BeamSpacing beams_;
+  Columns covered_{};  ///< 1 where an echo came back, or in a column beside
 };
 
 inline SightImage::Sight SightImage::read(const std::vector<Range>& image, const SightPixels::Pixel& pixel,

@@ -155,7 +155,7 @@ TEST(Clusters, ThreadsChangeNothing) {
     const std::vector<int> expected = clustersOf(echoes, kReach, kOptions);
     Clusters clusters(kReach, kOptions);
     for (int round = 0; round < 5; ++round) {
-      clusters.connect(echoes.sensor, echoes.points, echoes.heights, echoes.roles, workers);
+      clusters.connect(echoes.sensor, echoes.points, echoes.heights, echoes.roles, 0.0, workers);
       for (std::size_t i = 0; i < expected.size(); ++i) ASSERT_EQ(clusters.of(i), expected[i]) << "echo " << i;
     }
     clusters_in_all += clusters.count();
@@ -197,6 +197,26 @@ TEST(Clusters, OnesAboveTheOtherTouchVertically) {
   EXPECT_TRUE(connected(5.05F, 0.35F));
   EXPECT_FALSE(connected(5.05F, 0.95F));
   EXPECT_TRUE(connected(60.05F, 0.95F));
+}
+
+TEST(Clusters, BeamsFarApartTouchVertically) {
+  constexpr double kBeams = 0.036;
+  Echoes echoes;
+  for (const float height : {0.4F, 1.1F}) echoes.add(20.0F, 0.0F, height);  // a beam apart
+  echoes.add(20.0F, 0.0F, 3.0F);                                            // two and a half
+  Clusters clusters(40.0, kOptions);
+  const auto connected = [&](double beams_apart) {
+    clusters.connect(echoes.sensor, echoes.points, echoes.heights, echoes.roles, beams_apart);
+    return clusters.count();
+  };
+  EXPECT_EQ(connected(0.0), 3);
+  EXPECT_EQ(connected(kBeams), 2);
+  EXPECT_EQ(connected(0.005), 3) << "beams close together never connect less";
+  Clusters::Options wide = kOptions;
+  wide.up_angle = kOptions.up_beams * kBeams;
+  connected(kBeams);
+  const std::vector<int> expected = clustersOf(echoes, 40.0, wide);
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(clusters.of(i), expected[i]);
 }
 
 TEST(Clusters, TheSkirtHangsOnWhatStandsAboveItAndConnectsNothing) {

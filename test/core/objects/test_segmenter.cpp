@@ -72,6 +72,20 @@ TEST(Segmenter, IsNewWhereEnoughIsNew) {
   EXPECT_TRUE(isNewOf(50, 0, 100, 4.0, 0));
 }
 
+TEST(Segmenter, WhatMayHaveStoodBetweenBeamsIsNotNew) {
+  const auto isNewOf = [](double height, int coarsely) {
+    Segment segment;
+    segment.new_echoes = segment.surely_new_echoes = 40;
+    segment.coarsely_new_echoes = coarsely;
+    segment.echoes.resize(40);
+    segment.high = Eigen::Vector3d(4.0, 0.1, height);
+    return SegmentRules(ObjectConfig{}).isNew(segment);
+  };
+  EXPECT_TRUE(isNewOf(0.3, 20));
+  EXPECT_FALSE(isNewOf(0.3, 21)) << "a guard rail";
+  EXPECT_TRUE(isNewOf(0.6, 40)) << "too high to be missed";
+}
+
 TEST(Segmenter, APedestrianAtAWallIsOnlyHimself) {
   JudgedScene scene(0.0);
   scene.face({10.0, -8.0, 0.3}, {0.0, 16.0, 0.0}, 2.0, Place::kSettled);

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/sight/z_buffer.h"
 #include "core/sight/range_image.h"
+#include "core/sight/z_buffer.h"
 #include "donex/detector.h"
 
 namespace donex {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -87,6 +88,87 @@ TEST(SightHistory, CountsFreeSurfaceAndHiddenApart) {
   EXPECT_EQ(evidence.surface, 2);
   EXPECT_EQ(evidence.hidden, 2);
   EXPECT_EQ(sum(view(history).ask(Eigen::Vector3f(1.0F, 0.0F, 9.0F), kEver, kAll)), 0) << "above every beam";
+}
+
+/// Beams `apart`: 0.036 (2 degrees) is as those of 16 beams.
+Scan sparseShell(double stamp, double range, double apart = 0.036) {
+  Scan scan;
+  scan.stamp = stamp;
+  for (int azimuth = 0; azimuth < 720; ++azimuth) {
+    for (int beam = -8; beam <= 8; ++beam) {
+      const double angle = azimuth * M_PI / 360.0;
+      const Eigen::Vector3d direction(std::cos(angle), std::sin(angle), apart * beam);
+      scan.echoes.push_back((range * direction.normalized()).cast<float>());
+    }
+  }
+  return scan;
+}
+
+TEST(SightHistory, BeamsFarApartAreLessSure) {
+  SightHistory history(10.0, 0.0, 0.5F, kReading);
+  for (int k = 0; k < 4; ++k) add(history, sparseShell(k, 60.0));
+  const SightView before = history.seenBefore(Eigen::Isometry3d::Identity());
+  const auto at = [&](float range) { return before.ask(Eigen::Vector3f(range, 0.0F, 0.3F), kEver, kAll); };
+  struct Expected {
+    float range, certain, fine;
+  };
+  for (const auto& [range, certain, fine] : {Expected{5.0F, 1.0F, 1.0F},
+                                             {10.0F, 1.0F, 0.2F / 0.36F},
+                                             {20.0F, 0.4F / 0.72F, 0.2F / 0.72F},
+                                             {40.0F, 0.4F, 0.2F / 1.44F}}) {
+    const Evidence evidence = at(range);
+    EXPECT_EQ(evidence.free, 3) << range;
+    EXPECT_NEAR(evidence.certain_free, 3.0F * certain, 0.05F) << range;
+    EXPECT_NEAR(evidence.fine_free, 3.0F * fine, 0.05F) << range;
+  }
+}
+
+TEST(SightHistory, WhatIsNotReadBetweenBeamsIsSure) {
+  SightHistory history(10.0, 0.0, 0.5F, {false, 0.0});
+  for (int k = 0; k < 4; ++k) add(history, sparseShell(k, 60.0));
+  const Evidence evidence =
+      history.seenBefore(Eigen::Isometry3d::Identity()).ask(Eigen::Vector3f(40.0F, 0.05F, 0.0F), kEver, kAll);
+  EXPECT_EQ(evidence.free, 3);
+  EXPECT_EQ(evidence.certain_free, 3.0F);
+}
+
+TEST(SightHistory, BeamsFartherApartThanTheGapAreNeighboursOnceMeasured) {
+  SightHistory history(10.0, 0.0, 0.5F, kReading);
+  for (int k = 0; k < 5; ++k) add(history, sparseShell(k, 60.0, 0.06));
+  const Evidence evidence =
+      history.seenBefore(Eigen::Isometry3d::Identity()).ask(Eigen::Vector3f(10.0F, 0.0F, 0.3F), kEver, kAll);
+  EXPECT_EQ(evidence.free, 3) << "all but the first";
+}
+
+TEST(SightHistory, MeasuresTheSensorOnceATurnIsOver) {
+  SightHistory history(10.0, 0.0, 0.5F, kReading);
+  add(history, sparseShell(0.0, 30.0));
+  EXPECT_FALSE(history.measured().has_value());
+  EXPECT_EQ(history.beamsApart(), 0.0);
+  add(history, sparseShell(0.1, 30.0));
+  EXPECT_NEAR(history.beamsApart(), 0.036, 0.001);
+  const auto sensor = history.measured();
+  ASSERT_TRUE(sensor.has_value());
+  EXPECT_NEAR(sensor->beams_apart, 2.06, 0.06);
+  EXPECT_NEAR(sensor->lowest, -16.1, 0.3);
+  EXPECT_NEAR(sensor->highest, 16.1, 0.3);
+  EXPECT_EQ(sensor->around, 360.0);
+  EXPECT_NEAR(sensor->turns_per_second, 10.0, 1e-6);
+  EXPECT_NE(describe(*sensor).find("beams 2.0"), std::string::npos) << describe(*sensor);
+  history.reset();
+  EXPECT_FALSE(history.measured().has_value());
+}
+
+TEST(SightHistory, MeasuresEachSensorByItself) {
+  SightHistory history(10.0, 0.0, 0.5F, kReading);
+  for (int k = 0; k < 6; ++k) {
+    Scan scan = k % 2 == 0 ? sparseShell(0.05 * k, 30.0) : shell(0.05 * k, 30.0);
+    scan.base_from_sensor.translation() << (k % 2 == 0 ? 1.0 : -1.0), 0.0, 0.0;
+    add(history, scan);
+    if (k >= 3) {
+      EXPECT_NEAR(history.beamsApart(), k % 2 == 0 ? 0.036 : 0.0205, 0.001) << "cloud " << k;
+    }
+  }
 }
 
 TEST(SightHistory, StopsOnceEnoughSawItFreeNewestFirst) {

@@ -1,0 +1,16 @@
+#include "donex/measured_sensor.h"
+
+#include <iomanip>
+#include <sstream>
+
+namespace donex {
+
+std::string describe(const MeasuredSensor& sensor) {
+  std::ostringstream text;
+  text << std::fixed << "beams " << std::setprecision(2) << sensor.beams_apart << " deg apart, from "
+       << std::setprecision(1) << sensor.lowest << " to " << sensor.highest << " deg, over " << std::setprecision(0)
+       << sensor.around << " deg of azimuth, " << std::setprecision(1) << sensor.turns_per_second << " turns a second";
+  return text.str();
+}
+
+}  // namespace donex
