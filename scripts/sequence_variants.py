@@ -2,6 +2,7 @@
 import numpy
 
 BEAMS = 64
+RING_GAP = 0.4  # deg; elevations of beams farther apart than this are told apart one by one
 
 
 def read_poses(sequence):
@@ -37,6 +38,16 @@ def with_poses(sequence, folder, poses):
     numpy.savetxt(folder / "poses.txt", poses[:, :3].reshape(-1, 12), fmt="%.9g")
 
 
+def beam_of(elevation):
+    """Number of each echo's beam, from the lowest on; where rings lie too close to be told apart, of 64 even bands."""
+    ordered = numpy.sort(elevation)
+    gaps = numpy.flatnonzero(numpy.diff(ordered) > numpy.radians(RING_GAP))
+    if len(gaps) >= BEAMS // 4:
+        return numpy.searchsorted(0.5 * (ordered[gaps] + ordered[gaps + 1]), elevation)
+    low, high = numpy.percentile(elevation, [0.5, 99.9])
+    return numpy.round((elevation - low) / (high - low) * (BEAMS - 1)).astype(int)
+
+
 def with_fewer_beams(sequence, folder, every):
     """Echoes by the elevation of their beam; those of the beams that stay, and their labels."""
     linked(sequence, folder)
@@ -46,9 +57,7 @@ def with_fewer_beams(sequence, folder, every):
     for file in sorted((sequence / "velodyne").iterdir()):
         echoes = numpy.fromfile(file, numpy.float32).reshape(-1, 4)
         elevation = numpy.arctan2(echoes[:, 2], numpy.hypot(echoes[:, 0], echoes[:, 1]))
-        low, high = numpy.percentile(elevation, [0.5, 99.9])
-        beam = numpy.round((elevation - low) / (high - low) * (BEAMS - 1)).astype(int)
-        kept = beam % every == 0
+        kept = beam_of(elevation) % every == 0
         echoes[kept].tofile(folder / "velodyne" / file.name)
         labels = sequence / "labels" / (file.stem + ".label")
         if labels.exists():
