@@ -190,7 +190,8 @@ Proof ObjectTracker::proofOf(const Track& track, const MotionTests& tests, doubl
     if (isBelieved(track.receding, stamp)) return Proof::kRearReceded;
     if (isBelieved(track.shifting, stamp)) return Proof::kShapeElsewhere;
     if (isBelieved(track.advancing, stamp)) return Proof::kEndsMoved;
-    if (rules_.isNew(segment) && !rules_.isNewOverhead(segment, sensor_)) return Proof::kEnteredFree;
+    if (rules_.isNew(segment) && !rules_.isPole(segment) && !rules_.isNewOverhead(segment, sensor_))
+      return Proof::kEnteredFree;
   }
   const bool just_stopped =
       track.dynamic && !SegmentRules::isMostlySettled(segment) && stamp - track.last_motion <= config_.stop_time;

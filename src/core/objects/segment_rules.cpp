@@ -39,6 +39,11 @@ bool SegmentRules::isThin(const Segment& segment, const Eigen::Vector3d& sensor)
   return distance < options_.thin_reach && segment.extent().z() < options_.thin_angle * distance;
 }
 
+bool SegmentRules::isPole(const Segment& segment) const {
+  const Eigen::Vector3d extent = segment.extent();
+  return extent.head<2>().maxCoeff() < options_.slim && extent.z() > options_.low;
+}
+
 bool SegmentRules::areAlike(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const {
   const Eigen::Array3d unlike = (options_.other_view_share * a.cwiseMax(b)).array() + options_.frayed_ends;
   return ((a - b).array().abs() <= unlike).all();

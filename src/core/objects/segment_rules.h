@@ -12,6 +12,7 @@ struct SegmentOptions {
   double unsure_new_share = 0.5;  ///< of all echoes that must be new where they are not surely so
   double low = 0.5;               ///< what is lower fits between beams [m]
   double most_coarse = 0.5;    ///< of the new echoes of something low: with more that are so it may have stood before
+  double slim = 0.15;          ///< what is so slim and higher than `low` is a pole [m]
   double overhead = 2.0;       ///< above ground: above people's heads [m]
   double upright_ratio = 0.3;  ///< height by length: about that of a car
   double thin_angle = 0.02;    ///< seen under less, it is no higher than one or two beams of any sensor [rad]
@@ -50,6 +51,10 @@ class SegmentRules {
 
   /// Near, and yet hardly higher than a beam: an edge, a wire, a branch. `sensor` in the odometry frame.
   bool isThin(const Segment& segment, const Eigen::Vector3d& sensor) const;
+
+  /// Upright and slimmer than anything that moves: where beams beside one another lie farther apart, whole scans miss
+  /// it.
+  bool isPole(const Segment& segment) const;
 
   /// Extents [m] that may be those of one object, seen from two places.
   bool areAlike(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;

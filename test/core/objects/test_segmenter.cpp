@@ -225,6 +225,17 @@ TEST(Segmenter, AThingThatHidesAmongWhatIsSettledIsTakenFromIt) {
   EXPECT_EQ(segments[0].echoes.size(), 6U * 16U);
 }
 
+TEST(Segmenter, APoleIsSlimAndHigh) {
+  const auto isPole = [](double x, double y, double height) {
+    Segment segment;
+    segment.high = Eigen::Vector3d(x, y, height);
+    return SegmentRules(ObjectConfig{}).isPole(segment);
+  };
+  EXPECT_TRUE(isPole(0.1, 0.05, 1.5));
+  EXPECT_FALSE(isPole(0.3, 0.1, 1.5)) << "somebody from the side";
+  EXPECT_FALSE(isPole(0.1, 0.1, 0.4)) << "part of anything";
+}
+
 TEST(Segmenter, AnEdgeIsThinAndFarThingsAreNot) {
   Segment edge;
   edge.low = Eigen::Vector3d(12.0, -1.0, 2.0);
