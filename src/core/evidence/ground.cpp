@@ -187,8 +187,24 @@ Ground::Sector Ground::sectorOf(int x, int y) {
   return static_cast<Sector>(std::min(static_cast<int>(turn * kBearings), kBearings - 1));
 }
 
+inline Ground::Continuation Ground::continueTo(const Cell& cell) const {
+  const std::size_t here = indexOf(cell.x, cell.y);
+  const Nearer& nearer = nearer_[cell.nearer];
+  const float *unseen_here = unseen_.data() + here, *ground_here = ground_.data() + here;
+  float sum = 0.0F, weights = 0.0F, unseen = kNone;
+  for (std::size_t k = 0; k < kMostNearer; ++k) {
+    const float since_seen = unseen_here[nearer.offset[k]] + nearer.away[k];
+    const float weight = 1.0F / (since_seen * since_seen);
+    sum += weight * (ground_here[nearer.offset[k]] - nearer.climb[k]);
+    weights += weight;
+    unseen = std::min(unseen, since_seen);
+  }
+  if (weights > 0.0F) return {sum / weights, unseen};
+  return {startAt(offsetOf(cell)), options_.start_uncertainty};
+}
+
 /// Cells of other sectors keep the ground that they have.
-void Ground::continueOutwards(Sectors sectors) {
+DONEX_WIDE_LOOPS void Ground::continueOutwards(Sectors sectors) {
   if (sectors == 0) return;
   std::array<bool, kInAll + 1> is_asked{};
   is_asked[kInAll] = true;
@@ -251,26 +267,6 @@ void Ground::climbAround() {
       nearer.climb[k] = around_[static_cast<std::size_t>(nearer.number[k])].climb;
     }
   }
-}
-
-Ground::Continuation Ground::continueTo(const Cell& cell) const {
-  const std::size_t here = indexOf(cell.x, cell.y);
-  const Nearer& nearer = nearer_[cell.nearer];
-  std::array<float, kMostNearer> since_seen, height, weight;
-  for (std::size_t k = 0; k < kMostNearer; ++k) {
-    const std::size_t neighbour = here + static_cast<std::size_t>(nearer.offset[k]);
-    since_seen[k] = unseen_[neighbour] + nearer.away[k];
-    height[k] = ground_[neighbour] - nearer.climb[k];
-  }
-  for (std::size_t k = 0; k < kMostNearer; ++k) weight[k] = 1.0F / (since_seen[k] * since_seen[k]);
-  float sum = 0.0F, weights = 0.0F, unseen = kNone;
-  for (std::size_t k = 0; k < kMostNearer; ++k) {
-    sum += weight[k] * height[k];
-    weights += weight[k];
-    unseen = std::min(unseen, since_seen[k]);
-  }
-  if (weights > 0.0F) return {sum / weights, unseen};
-  return {startAt(offsetOf(cell)), options_.start_uncertainty};
 }
 
 float Ground::heightOf(const Eigen::Vector3f& point) const {
