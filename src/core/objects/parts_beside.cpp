@@ -13,51 +13,6 @@ namespace {
 constexpr int kColumns = SightPixels::kColumns;
 constexpr float kColumnsPerRadian = static_cast<float>(kColumns) / (2.0F * kPiF);
 
-using ColumnSet = std::bitset<kColumns>;
-
-ColumnSet setOf(const Turns::Columns& columns) {
-  ColumnSet set;
-  for (std::size_t c = 0; c < columns.size(); ++c) set[c] = columns[c] != 0;
-  return set;
-}
-
-ColumnSet columnsIn(const Turns::Directions& directions) {
-  ColumnSet set;
-  for (std::size_t c = 0; c < directions.size(); ++c) set[c] = directions[c] != 0;
-  return set;
-}
-
-/// With those next to them, to both sides, so many times.
-ColumnSet grown(ColumnSet columns, int times) {
-  for (int i = 0; i < times; ++i) {
-    columns |= columns << 1 | columns >> (kColumns - 1) | columns >> 1 | columns << (kColumns - 1);
-  }
-  return columns;
-}
-
-ColumnSet shrunk(const ColumnSet& columns, int times) { return ~grown(~columns, times); }
-
-/// With gaps of twice as many columns filled, and less the column at each end.
-Turns::Directions closed(const Turns::Directions& directions, int border) {
-  Turns::Directions result = directions;
-  const auto step = [&](auto&& join) {
-    const Turns::Directions before = result;
-    for (std::size_t c = 0; c < before.size(); ++c) {
-      const Turns::Bands left = before[(c + before.size() - 1) % before.size()],
-                         right = before[(c + 1) % before.size()];
-      result[c] = join(join(before[c], left), right);
-    }
-  };
-  for (int i = 0; i < border; ++i) step([](Turns::Bands a, Turns::Bands b) { return a | b; });
-  for (int i = 0; i <= border; ++i) step([](Turns::Bands a, Turns::Bands b) { return a & b; });
-  return result;
-}
-
-/// Of a part that was cut by elevation: the outermost ones are shared with the parts above and below.
-Turns::Bands withoutEnds(Turns::Bands bands) {
-  return bands == Turns::kAllBands ? bands : bands & (bands << 1) & (bands >> 1);
-}
-
 int widthOf(float degrees) { return static_cast<int>(std::ceil(degrees * kColumns / 360.0F)); }
 
 }  // namespace

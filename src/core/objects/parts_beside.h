@@ -2,12 +2,12 @@
 #pragma once
 
 #include <array>
-#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "core/objects/segment.h"
+#include "core/sight/direction_sets.h"
 #include "core/sight/turns.h"
 #include "donex/scan.h"
 
@@ -47,7 +47,6 @@ class PartsBeside {
 
  private:
   using EchoIterator = decltype(Segment::echoes)::const_iterator;
-  using ColumnSet = std::bitset<SightPixels::kColumns>;
 
   /// An echo that takes part in clusters.
   struct Kept {
