@@ -271,6 +271,15 @@ TEST(ObjectTracker, AThinThingNeverMoves) {
   }
 }
 
+TEST(ObjectTracker, APoleThatScansMissedHasNotEntered) {
+  for (const double width : {0.1, 0.5}) {
+    Followed followed;
+    JudgedScene scene(0.0);
+    scene.face({10.0, 2.0, 0.5}, {0.0, width, 0.0}, 1.5, Place::kSurelyNew);
+    EXPECT_EQ(followed.step(scene) > 0, width > 0.3) << width;
+  }
+}
+
 TEST(ObjectTracker, WhatIsLongerThanAnyVehicleIsNotFollowed) {
   for (const double length : {24.0, 26.0}) {
     Followed followed;

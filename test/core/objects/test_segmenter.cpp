@@ -49,6 +49,16 @@ TEST(Segmenter, TooFewEchoesAreNoThing) {
   }
 }
 
+TEST(Segmenter, EchoesABeamApartAreOneThing) {
+  JudgedScene scene(0.0);
+  for (const double height : {0.4, 1.1}) {
+    for (int i = 0; i < 6; ++i) scene.echo({20.0, 0.1 * i, height}, Place::kNew);
+  }
+  EXPECT_EQ(found(scene).size(), 2U);
+  scene.judged.beams_apart = 0.036;  // 0.7 m there
+  EXPECT_EQ(found(scene).size(), 1U);
+}
+
 TEST(Segmenter, IsNewWhereEnoughIsNew) {
   const ObjectConfig config;  // at least 5, more than 0.4 of new and settled, more than 0.15 of all
   const auto isNewOf = [&](int fresh, int settled, std::size_t all, double length = 4.0, int surely = -1) {
