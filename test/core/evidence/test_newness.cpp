@@ -86,13 +86,14 @@ std::vector<Case> cases() {
 INSTANTIATE_TEST_SUITE_P(Switches, AgainstThePlainRules, ::testing::ValuesIn(cases()));
 
 /// A wall all around at 10 m, and, where `range` is given, something before it ahead. The first echo lies ahead.
-Scan ahead(double stamp, double range = 10.0, const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity()) {
+Scan ahead(double stamp, double range = 10.0, const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity(),
+           double beams_apart = 0.02) {
   Scan scan;
   scan.stamp = stamp;
   scan.odom_from_base = pose;
   for (int azimuth = 0; azimuth < 720; ++azimuth) {
     for (int beam = 0; beam < 5; ++beam) {
-      const double angle = azimuth * M_PI / 360.0, slope = 0.02 * beam + 0.01;
+      const double angle = azimuth * M_PI / 360.0, slope = beams_apart * beam + 0.01;
       const bool is_ahead = azimuth < 20 || azimuth > 700;
       const Eigen::Vector3d direction = Eigen::Vector3d(std::cos(angle), std::sin(angle), slope).normalized();
       scan.echoes.push_back(((is_ahead ? range : 10.0) * direction).cast<float>());
@@ -115,6 +116,18 @@ TYPED_TEST(Newnesses, WhatComesIntoFreeSpaceIsNewUntilItsBirthWindowIsOver) {
     const bool young = 0.125 * (k - 10) <= 1.0;
     EXPECT_EQ(rig.first(ahead(0.125 * k, 6.0)), young ? Place::kSurelyNew : Place::kSettled) << "scan " << k;
   }
+}
+
+TYPED_TEST(Newnesses, BeamsFarApartHaveToSeeAPlaceFreeMoreOften) {
+  const auto placeAfter = [](int scans, double beams_apart) {
+    Rig<TypeParam> rig(gridOf(0.2));
+    const Eigen::Isometry3d at_rest = Eigen::Isometry3d::Identity();
+    for (int k = 0; k < scans; ++k) rig.first(ahead(0.1 * k, 10.0, at_rest, beams_apart));
+    return rig.first(ahead(0.1 * scans, 8.0, at_rest, beams_apart));
+  };
+  EXPECT_EQ(placeAfter(3, 0.02), Place::kSurelyNew);
+  EXPECT_EQ(placeAfter(3, 0.1), Place::kUnobserved) << "0.8 m apart there, half as sure";
+  EXPECT_EQ(placeAfter(5, 0.1), Place::kSurelyCoarselyNew);
 }
 
 TYPED_TEST(Newnesses, WithoutAnAgeOnlyTheScanOfBirthIsNew) {
