@@ -142,6 +142,12 @@ std::optional<TimeField> findTime(const PointCloud2& cloud, const CloudConfig& c
   return guessedTime(cloud);
 }
 
+std::optional<FieldPosition> findRing(const PointCloud2& cloud) {
+  const PointField* field = findField(cloud, "ring");
+  const bool usable = field != nullptr && field->datatype <= PointField::UINT32 && fits(*field, cloud.point_step);
+  return usable ? std::optional(FieldPosition{field->offset, field->datatype}) : std::nullopt;
+}
+
 /// Multiple of `alignment` from `size` upwards.
 std::size_t roundUp(std::size_t size, std::size_t alignment) { return (size + alignment - 1) / alignment * alignment; }
 
@@ -196,6 +202,7 @@ LayoutVerdict judgeLayout(const PointCloud2& cloud, const CloudConfig& config) {
   if (auto error = judgeCoordinate(cloud, "y", layout.y)) return *error;
   if (auto error = judgeCoordinate(cloud, "z", layout.z)) return *error;
   layout.time = findTime(cloud, config);
+  layout.ring = findRing(cloud);
   if (auto error = placeLabels(cloud, layout)) return *error;
   return layout;
 }

@@ -61,6 +61,7 @@ struct CloudLayout {
   bool swap_bytes = false;     ///< the cloud's byte order is not this machine's
   FieldPosition x, y, z;
   std::optional<TimeField> time;
+  std::optional<FieldPosition> ring;  ///< `ring` of spinning sensors' drivers, where it is a whole number
 
   /// Where the output puts its labels: a field of the input that has the name already (its bytes are
   /// overwritten: labels of an earlier classifier), else behind the input's point.

@@ -74,29 +74,4 @@ void moveEchoes(const Eigen::Isometry3d& motion, std::vector<Eigen::Vector3f>& e
   for (Eigen::Vector3f& echo : echoes) echo = move * echo;
 }
 
-bool liesOnTheGround(const std::vector<Eigen::Vector3f>& echoes) {
-  constexpr float kNear = 2.0F, kFar = 6.0F;       // around the origin [m]: there the ground is flat
-  constexpr float kLevel = 0.08F, kBelow = 0.15F;  // of the ground [m]
-  constexpr std::size_t kEnough = 200;             // echoes
-  std::size_t all = 0, level = 0, below = 0;
-  for (const Eigen::Vector3f& echo : echoes) {
-    const float range = echo.head<2>().norm();
-    const bool is_near = range > kNear && range < kFar;  // never with NaN
-    if (!is_near) continue;
-    ++all;
-    level += std::abs(echo.z()) < kLevel ? 1U : 0U;
-    below += echo.z() < -kBelow ? 1U : 0U;
-  }
-  return all >= kEnough && 10 * level > 3 * all && 50 * below < all;
-}
-
-std::string OriginWatch::follow(const std::vector<Eigen::Vector3f>& echoes, bool is_vehicle, const std::string& frame) {
-  if (!is_vehicle || on_the_ground_ >= kCertain) return "";
-  on_the_ground_ = liesOnTheGround(echoes) ? on_the_ground_ + 1 : 0;
-  if (on_the_ground_ < kCertain) return "";
-  return "the clouds are told in the vehicle's frame '" + frame +
-         "', and its origin lies on the ground, where no sensor is: set sensor_frame, or origin_x, origin_y and "
-         "origin_z, to where it is";
-}
-
 }  // namespace donex

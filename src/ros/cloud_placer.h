@@ -39,19 +39,4 @@ class CloudPlacer {
 
 void moveEchoes(const Eigen::Isometry3d& motion, std::vector<Eigen::Vector3f>& echoes);
 
-/// Whether the echoes lie as they do around the vehicle's own origin on the ground, where no sensor can be: somebody
-/// has moved the cloud into the vehicle's frame, and lines of sight would begin in the wrong place.
-bool liesOnTheGround(const std::vector<Eigen::Vector3f>& echoes);
-
-/// Clouds that somebody has moved into the vehicle's frame do not say where their sensor is.
-class OriginWatch {
- public:
-  /// What is strange, once; else empty. `is_vehicle`: the clouds are told in the vehicle's frame.
-  std::string follow(const std::vector<Eigen::Vector3f>& echoes, bool is_vehicle, const std::string& frame);
-
- private:
-  static constexpr int kCertain = 5;  // clouds in a row
-  int on_the_ground_ = 0;             // clouds in a row whose origin lies there
-};
-
 }  // namespace donex

@@ -45,6 +45,17 @@ float readCoordinate(const std::uint8_t* point, FieldPosition field, bool swap) 
   return field.datatype == PointField::FLOAT32 ? readFloat(at, swap) : toFloat(readDouble(at, swap));
 }
 
+/// Numbers of rings that are negative are told apart like all others.
+std::uint32_t readRing(const std::uint8_t* at, std::uint8_t datatype, bool swap) {
+  switch (datatype) {
+    case PointField::INT8:
+    case PointField::UINT8: return *at;
+    case PointField::INT16:
+    case PointField::UINT16: return read<std::uint16_t, std::uint16_t>(at, swap);
+    default: return read<std::uint32_t, std::uint32_t>(at, swap);
+  }
+}
+
 /// Calls visit(index of the echo, its first byte) for every echo in order. Its own copy of the layout: bytes that
 /// `visit` writes might be any object's, and what may have changed is read again for every echo.
 template <class Visit>
@@ -249,6 +260,13 @@ std::vector<double> sampleWrittenTimes(const PointCloud2& cloud, const CloudLayo
     if (echoOf(position).allFinite()) times.push_back(reader.written(point));
   }
   return times;
+}
+
+void parseRings(const PointCloud2& cloud, const CloudLayout& layout, std::vector<std::uint32_t>& rings) {
+  rings.resize(layout.echoes());
+  forEachPoint(cloud, layout, [&](std::size_t i, const std::uint8_t* point) {
+    rings[i] = readRing(point + layout.ring->offset, layout.ring->datatype, layout.swap_bytes);
+  });
 }
 
 sensor_msgs::PointCloud2Ptr labelCloud(const PointCloud2& cloud, const CloudLayout& layout, const EchoLabels& labels) {

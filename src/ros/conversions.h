@@ -50,6 +50,9 @@ sensor_msgs::PointCloud2Ptr labelCloud(const sensor_msgs::PointCloud2& cloud, co
 std::vector<double> sampleWrittenTimes(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout,
                                        std::size_t count);
 
+/// The number of each echo's ring. The layout must have rings.
+void parseRings(const sensor_msgs::PointCloud2& cloud, const CloudLayout& layout, std::vector<std::uint32_t>& rings);
+
 enum class CloudPart { kDynamic, kStatic };
 
 /// One of the two parts into which the labels divide the input, not organised; the input's own fields.

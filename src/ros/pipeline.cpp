@@ -208,7 +208,7 @@ void Pipeline::parse(const WaitingCloud& waiting) {
   if (parsed_ == waiting.number) return;
   const auto start = std::chrono::steady_clock::now();
   clockOf(waiting).read(*waiting.cloud, waiting.layout, scan_.echoes, times_);
-  no_returns_ = removeNoReturns(origin().cast<float>(), scan_.echoes);
+  no_returns_ = removeNoReturns(originOf(waiting).cast<float>(), scan_.echoes);
   parsed_ = waiting.number;
   parsing_time_ = secondsSince(start);
 }
@@ -219,7 +219,7 @@ void Pipeline::label(const WaitingCloud& waiting, const ScanMotion& motion) {
   scan_.stamp = stamp.toSec();
   scan_.base_from_sensor = motion.base_from_sensor;
   scan_.odom_from_base = motion.odom_from_base;
-  suspectOrigin(motion, waiting.cloud->header.frame_id);
+  suspectOrigin(motion, waiting);
   if (motion.sensor_from_cloud) {
     const Eigen::Vector3d sensor = motion.sensor_from_cloud->inverse().translation();
     no_returns_ = removeNoReturns(sensor.cast<float>(), scan_.echoes);
@@ -230,7 +230,7 @@ void Pipeline::label(const WaitingCloud& waiting, const ScanMotion& motion) {
         deskew(*motion.track, scan_.stamp, scan_.base_from_sensor, times_.after_stamp, scan_.echoes);
     if (fault != MotionFault::kNone) throw std::runtime_error(std::string("de-skewing: ") + describe(fault));
   }
-  moveToOrigin();
+  moveToOrigin(originOf(waiting));
   followTrack(motion);
   followOdometry(motion);
   completeOdometry(motion);
@@ -287,11 +287,23 @@ void Pipeline::tellStrangeTimes(EchoClock& clock) {
   if (!lack.empty() && events_.not_deskewed) events_.not_deskewed(lack);
 }
 
-void Pipeline::suspectOrigin(const ScanMotion& motion, const std::string& cloud_frame) {
-  const bool is_told = motion.sensor_from_cloud || !origin().isZero(0.0);
+void Pipeline::suspectOrigin(const ScanMotion& motion, const WaitingCloud& waiting) {
+  const bool is_told = motion.sensor_from_cloud || !toldOrigin().isZero(0.0);
   const bool is_vehicle = motion.base_from_sensor.isApprox(Eigen::Isometry3d::Identity()) && !motion.tracked;
-  const std::string strange = origin_watch_.follow(scan_.echoes, !is_told && is_vehicle, cloud_frame);
-  if (!strange.empty() && events_.strange_origin) events_.strange_origin(strange);
+  if (is_told || !is_vehicle) return;
+  const std::string strange = origin_watch_.follow(*waiting.cloud, waiting.layout, scan_.echoes);
+  if (strange.empty()) return;
+  if (events_.strange_origin) events_.strange_origin(strange);
+  if (!originOf(waiting).isZero(0.0)) reset();  // the scans so far saw from another place
+}
+
+Eigen::Vector3d Pipeline::toldOrigin() const {
+  return {config_.cloud.origin_x, config_.cloud.origin_y, config_.cloud.origin_z};
+}
+
+Eigen::Vector3d Pipeline::originOf(const WaitingCloud& waiting) const {
+  const bool is_told = !toldOrigin().isZero(0.0);
+  return is_told ? toldOrigin() : origin_watch_.foundIn(waiting.cloud->header.frame_id);
 }
 
 void Pipeline::watchFlood() {
@@ -307,11 +319,11 @@ void Pipeline::watchFlood() {
 }
 
 /// Lines of sight begin in the origin of the scan's frame: in a merged cloud that is not where the sensor is.
-void Pipeline::moveToOrigin() {
-  if (origin().isZero(0.0)) return;
-  const Eigen::Vector3f shift = origin().cast<float>();
+void Pipeline::moveToOrigin(const Eigen::Vector3d& origin) {
+  if (origin.isZero(0.0)) return;
+  const Eigen::Vector3f shift = origin.cast<float>();
   for (Eigen::Vector3f& echo : scan_.echoes) echo -= shift;
-  scan_.base_from_sensor.translate(origin());
+  scan_.base_from_sensor.translate(origin);
 }
 
 void Pipeline::remark() {

@@ -23,6 +23,7 @@
 #include "ros/flood_watch.h"
 #include "ros/given_odometry.h"
 #include "ros/motion_source.h"
+#include "ros/origin_watch.h"
 
 namespace donex {
 
@@ -143,17 +144,18 @@ class Pipeline {
   void use(const nav_msgs::Odometry& odometry);
   void dropSuspect();
   void watchFlood();
-  void suspectOrigin(const ScanMotion& motion, const std::string& cloud_frame);
+  void suspectOrigin(const ScanMotion& motion, const WaitingCloud& waiting);
   void followTrack(const ScanMotion& motion);
   void followOdometry(const ScanMotion& motion);
   void completeOdometry(const ScanMotion& motion);
   void startAnew(const std::string& why);
   MotionAnswer motionOf(const WaitingCloud& waiting, bool settle);
   void label(const WaitingCloud& waiting, const ScanMotion& motion);
-  void moveToOrigin();
+  void moveToOrigin(const Eigen::Vector3d& origin);
   void remark();
   void tellSensor();
-  Eigen::Vector3d origin() const { return {config_.cloud.origin_x, config_.cloud.origin_y, config_.cloud.origin_z}; }
+  Eigen::Vector3d toldOrigin() const;
+  Eigen::Vector3d originOf(const WaitingCloud& waiting) const;
   void refuse(OdometryRefusal refusal, const std::string& text);
   void drop(DropReason reason, const std::string& text);
 

@@ -108,6 +108,7 @@ class CloudBuilder {
       case PointField::FLOAT64: return put(to, value);
       case PointField::UINT32: return put(to, static_cast<std::uint32_t>(value));
       case PointField::INT32: return put(to, static_cast<std::int32_t>(value));
+      case PointField::INT16:
       case PointField::UINT16: return put(to, static_cast<std::uint16_t>(value));
       default: return put(to, static_cast<std::uint8_t>(value));
     }

@@ -3,6 +3,7 @@
 
 #include "core/motion/surfaces.h"
 #include "ros/cloud_placer.h"
+#include "ros/origin_watch.h"
 #include "ros/pipeline_rig.h"
 
 namespace donex {

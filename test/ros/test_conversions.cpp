@@ -97,6 +97,32 @@ TEST(ParseEchoes, EmptyAndOneEcho) {
   EXPECT_EQ(echoesOf(*CloudBuilder().xyz().size(1).at(0, 1, 2, 3).build()).size(), 1U);
 }
 
+TEST(ParseRings, ReadsWholeNumbersOfAnySize) {
+  for (const std::uint8_t datatype : {PointField::INT8, PointField::UINT8, PointField::INT16, PointField::UINT16,
+                                      PointField::INT32, PointField::UINT32}) {
+    for (const bool is_big : {false, true}) {
+      CloudBuilder builder;
+      if (is_big) builder.bigEndian();
+      builder.xyz().field("ring", datatype).padding(3).size(5);
+      for (std::size_t i = 0; i < 5; ++i) builder.at(i, 1, 2, 3).set(i, "ring", static_cast<double>(20 * i));
+      const auto cloud = builder.build();
+      const auto layout = std::get<CloudLayout>(judgeLayout(*cloud));
+      ASSERT_TRUE(layout.ring) << int{datatype};
+      std::vector<std::uint32_t> rings;
+      parseRings(*cloud, layout, rings);
+      EXPECT_EQ(rings, (std::vector<std::uint32_t>{0, 20, 40, 60, 80})) << int{datatype} << is_big;
+    }
+  }
+}
+
+TEST(ParseRings, OtherFieldsAreNoRings) {
+  const auto ringOf = [](CloudBuilder& builder) { return std::get<CloudLayout>(judgeLayout(*builder.build())).ring; };
+  EXPECT_FALSE(ringOf(CloudBuilder().xyz().size(1)));
+  EXPECT_FALSE(ringOf(CloudBuilder().xyz().field("ring", PointField::FLOAT32).size(1)));
+  EXPECT_FALSE(ringOf(CloudBuilder().xyz().fieldAt("ring", PointField::UINT16, 14).pointStep(15).size(1)))
+      << "ends behind its point";
+}
+
 /// A cloud of billions of empty rows needs no byte; this many would take for ever.
 TEST(ParseEchoes, RowsWithoutEchoesAreNotWalked) {
   const auto cloud = CloudBuilder().xyz().field("time", PointField::FLOAT32).size(0).build();

@@ -1,6 +1,7 @@
 // Clouds that are labelled and should not be believed without a word, two sources of one thing, and tf that was lost.
 #include "ros/faults_rig.h"
 #include "ros/lost_transform.h"
+#include "support/room_of_rings.h"
 
 namespace donex {
 namespace {
@@ -33,6 +34,19 @@ class FaultsOfClouds : public FaultsTest {
       const Eigen::Vector3d echo = ring_[i].cast<double>();
       const double share = static_cast<double>(i) / static_cast<double>(ring_.size());
       builder.at(i, echo.x(), echo.y(), echo.z()).set(i, "time", i == kWild ? 0.9 : kPeriod * (share - 1.0));
+    }
+    return builder.build();
+  }
+  /// Of a sensor 1 m before and 1.8 m above the vehicle's origin, told in the vehicle's frame.
+  boost::shared_ptr<sensor_msgs::PointCloud2> cloudMovedWithItsRings() const {
+    const auto mounting = Eigen::Isometry3f(Eigen::Translation3f(1.0F, 0.0F, 1.8F));
+    const testing::RingedCloud cloud = testing::ringsIn(testing::Room::kWithWalls, mounting);
+    test::CloudBuilder builder;
+    builder.frame("base_link").stamp(now_).xyz().field("ring", sensor_msgs::PointField::UINT16);
+    builder.size(static_cast<std::uint32_t>(cloud.echoes.size()));
+    for (std::size_t i = 0; i < cloud.echoes.size(); ++i) {
+      const Eigen::Vector3d echo = cloud.echoes[i].cast<double>();
+      builder.at(i, echo.x(), echo.y(), echo.z()).set(i, "ring", cloud.rings[i]);
     }
     return builder.build();
   }
@@ -86,6 +100,24 @@ TEST_F(FaultsOfClouds, NoReturnsAtTheSensorOfAMovedCloud) {
   drive(echoes, 1, "base_link");
   EXPECT_EQ(dynamicEchoes(), 0);
   conclude("beams without an echo at 0, 0, 0, moved into the vehicle's frame with the cloud", "none is dynamic");
+}
+
+TEST_F(FaultsOfClouds, MovedIntoTheVehiclesFrame) {
+  load();
+  for (int scan = 0; scan < 10; ++scan) {
+    advance();
+    sendOdometry(now_);
+    ++clouds_sent_;
+    clouds_.publish(cloudMovedWithItsRings());
+  }
+  ASSERT_TRUE(waitForLabeled(10)) << status_;
+  ASSERT_TRUE(waitFor([this] {
+    return diagnostic("origin of the clouds").find("their rings meet at x 1.00, y") != std::string::npos;
+  })) << diagnostic("origin of the clouds");
+  conclude(
+      "clouds moved into the vehicle's frame; `origin of the clouds` says where their rings meet, and lines of sight "
+      "begin there",
+      "every scan labelled");
 }
 
 TEST_F(FaultsOfClouds, NoTimesOfEchoes) {
