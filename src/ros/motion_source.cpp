@@ -100,7 +100,7 @@ void MotionSource::reset() {
   pose_and_twist_.reset();
   ++track_number_;
   scan_odometry_.reset();
-  mounting_.reset();
+  mountings_.clear();
 }
 
 bool MotionSource::wantsOdometry() const { return usesOdometry(source_) || source_ == OdometrySource::kAuto; }
@@ -229,33 +229,35 @@ std::optional<MotionMissing> MotionSource::choose(const ScanTimes& times, bool s
   return std::nullopt;
 }
 
-/// From tf where that knows the vehicle's frame; else the sensor is the vehicle.
+/// From tf where that knows the vehicle's frame; else the first sensor is the vehicle.
 std::optional<MotionMissing> MotionSource::mount(const ScanTimes& times, const std::string& sensor_frame, bool settle) {
-  if (mounting_) return std::nullopt;
-  const auto found = lookup(frameName(config_.base_frame), sensor_frame, times.stamp);
+  if (mountings_.count(sensor_frame) > 0) return std::nullopt;
+  const bool is_first = mountings_.empty();
+  const std::string vehicle = is_first ? frameName(config_.base_frame) : mounted_frame_;
+  const auto found = lookup(vehicle, sensor_frame, times.stamp);
   const auto* mounting = std::get_if<Eigen::Isometry3d>(&found);
-  if (mounting == nullptr && !settle) return std::get<MotionMissing>(found);
-  mounting_ = mounting != nullptr ? *mounting : Eigen::Isometry3d::Identity();
-  mounted_frame_ = mounting != nullptr ? frameName(config_.base_frame) : sensor_frame;
+  if (mounting == nullptr && !(settle && is_first)) return std::get<MotionMissing>(found);
+  mountings_[sensor_frame] = mounting != nullptr ? *mounting : Eigen::Isometry3d::Identity();
+  if (is_first) mounted_frame_ = mounting != nullptr ? vehicle : sensor_frame;
   return std::nullopt;
 }
 
 MotionAnswer MotionSource::fromScans(const ScanTimes& times, const std::string& sensor_frame, bool settle,
                                      const std::vector<Eigen::Vector3f>& echoes) {
   if (const auto nothing = mount(times, sensor_frame, settle)) return *nothing;
+  const Eigen::Isometry3d& mounting = mountings_.at(sensor_frame);
   const double stamp = times.stamp.toSec();
   const Eigen::Isometry3d before = scan_odometry_.odomFromBase();
   const EgoMotion& track = scan_odometry_.track();
   const double moment_before = track.empty() ? 0.0 : track.newestStamp();
   ScanMotion motion;
   const std::vector<float> none;
-  motion.tracked =
-      scan_odometry_.locate(stamp, echoes, times.of_echoes != nullptr ? *times.of_echoes : none, *mounting_);
+  motion.tracked = scan_odometry_.locate(stamp, echoes, times.of_echoes != nullptr ? *times.of_echoes : none, mounting);
   if (motion.tracked->status == TrackingStatus::kLost) {
     return MotionMissing{DropReason::kLost,
                          textOf("the cloud of ", stamp, " s does not fit those before, or is too small"), false};
   }
-  motion.base_from_sensor = *mounting_;
+  motion.base_from_sensor = mounting;
   motion.odom_from_base = scan_odometry_.odomFromBase();
   motion.odom_frame = frameName(config_.fixed_frame);
   motion.base_frame = mounted_frame_;

@@ -1,6 +1,7 @@
 // Where vehicle and sensor were during a scan: odometry messages or tf, and the mounting from tf.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -131,9 +132,9 @@ class MotionSource {
   std::size_t track_number_ = 0;
   EgoMotion tf_track_;  // of one scan
   ScanOdometry scan_odometry_;
-  std::optional<Eigen::Isometry3d> mounting_;  // with kLidar; it stays
-  std::string mounted_frame_;                  // the vehicle's, with kLidar
-  Frames frames_;                              // of the odometry in use; empty before the first
+  std::map<std::string, Eigen::Isometry3d> mountings_;  // of sensors by their frames, with kLidar; they stay
+  std::string mounted_frame_;                           // the vehicle's, with kLidar
+  Frames frames_;                                       // of the odometry in use; empty before the first
 };
 
 }  // namespace donex

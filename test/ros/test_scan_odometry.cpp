@@ -53,6 +53,34 @@ TEST(ScanOdometry, TakesTheMountingFromTfWhereItIsThere) {
   EXPECT_NEAR(rig.labeled.back().odom_from_base.translation().z(), 0.0, 1e-3);
 }
 
+TEST(ScanOdometry, TwoSensorsOfOneVehicleShareItsMotion) {
+  const auto world = testing::courtyard();
+  Eigen::Isometry3d roof = Eigen::Isometry3d::Identity(), bumper = Eigen::Isometry3d::Identity();
+  roof.translation().z() = 0.5;
+  bumper.translate(Eigen::Vector3d(2.0, -0.4, -0.6)).rotate(Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitZ()));
+  ScanOdometry odometry;
+  for (int i = 0; i < 20; ++i) {
+    const Eigen::Isometry3d& mounting = i % 2 == 0 ? roof : bumper;
+    Eigen::Isometry3d odom_from_base = Eigen::Isometry3d::Identity();
+    odom_from_base.translation().x() = kSpeed * 0.05 * i;
+    const auto echoes = testing::seenFrom(odom_from_base * mounting, world);
+    const TrackedScan& tracked = odometry.locate(kStart + 0.05 * i, echoes, {}, mounting);
+    EXPECT_EQ(tracked.is_new_track, i == 0) << i;
+    EXPECT_TRUE(odometry.odomFromBase().isApprox(odom_from_base, 1e-3)) << i;
+  }
+}
+
+TEST(ScanOdometry, ASecondSensorThatTfDoesNotPlaceIsDropped) {
+  PipelineRig rig(smallConfig(OdometrySource::kLidar), false);
+  drive(rig, 5);
+  auto cloud = boost::make_shared<sensor_msgs::PointCloud2>(*cloudAt(kStart + 0.5));
+  cloud->header.frame_id = "another_sensor";
+  rig.pipeline.addCloud(cloud, kStart + 0.5);
+  rig.pipeline.finish();
+  EXPECT_EQ(rig.labeled.size(), 5U);
+  EXPECT_EQ(rig.dropped(DropReason::kNoTransform), 1U);
+}
+
 TEST(ScanOdometry, ACloudThatDoesNotFitIsDroppedForThatReason) {
   PipelineRig rig(smallConfig(OdometrySource::kLidar), false);
   drive(rig, 5);
