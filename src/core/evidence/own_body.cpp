@@ -78,7 +78,7 @@ void OwnBody::leaveOut(const Scan& scan, std::size_t first, std::size_t last,
   const auto leave_out = [&](std::size_t i) {
     const Eigen::Vector3f place = base_from_sensor * scan.echoes[i];
     const int cell = detects() ? cellOf(place) : kNone;
-    const bool stays = cell != kNone && counts_[static_cast<std::size_t>(cell)] >= options_.body;
+    const bool stays = cell != kNone && isBody(cell);
     if (stays || isInBox(place)) is_solid[i] = 0;
   };
   if (hasBox()) {
@@ -106,17 +106,34 @@ void OwnBody::beginTurn(const Scan& scan) {
   if (is_counting_) count();
   const Eigen::Vector3d place = scan.odom_from_base.translation();
   if (!has_place_) center_ = scan.base_from_sensor.translation().cast<float>();
-  is_counting_ = has_place_ && (place - last_place_).norm() >= options_.step;
-  if (!has_place_ || is_counting_) last_place_ = place;
+  is_counting_ = !has_place_ || (place - last_place_).norm() >= options_.step;
+  if (is_counting_) last_place_ = place;
   has_place_ = true;
 }
 
+/// Echoes scatter about a body's surface: what was hit before and lies beside what stays is its own, too. At the edge
+/// of the cells a neighbour may be one of the other side.
+bool OwnBody::isBody(int cell) const {
+  const int least = leastOfBody(), row = size_.x(), layer = size_.x() * size_.y();
+  const auto stays = [&](int other) {
+    const bool exists = other >= 0 && other < static_cast<int>(counts_.size());
+    return exists && counts_[static_cast<std::size_t>(other)] >= least;
+  };
+  if (stays(cell)) return true;
+  const auto is_beside = [&](int offset) { return stays(cell - offset) || stays(cell + offset); };
+  return counts_[static_cast<std::size_t>(cell)] > 0 && (is_beside(1) || is_beside(row) || is_beside(layer));
+}
+
+/// What was hit from every place so far may be the body: until there are enough places, that has to do.
+int OwnBody::leastOfBody() const { return std::clamp(options_.gain * places_, options_.suspect, options_.body); }
+
 void OwnBody::count() {
+  ++places_;
   is_found_ = false;
   for (std::size_t cell = 0; cell < counts_.size(); ++cell) {
     const int count = counts_[cell] + (hit_[cell] != 0 ? options_.gain : -options_.loss);
     counts_[cell] = static_cast<std::uint8_t>(std::clamp(count, 0, options_.most));
-    is_found_ = is_found_ || counts_[cell] >= options_.body;
+    is_found_ = is_found_ || counts_[cell] >= leastOfBody();
   }
   std::fill(hit_.begin(), hit_.end(), std::uint8_t{0});
 }
@@ -125,6 +142,7 @@ void OwnBody::reset() {
   std::fill(counts_.begin(), counts_.end(), std::uint8_t{0});
   std::fill(hit_.begin(), hit_.end(), std::uint8_t{0});
   has_place_ = is_counting_ = is_found_ = false;
+  places_ = 0;
 }
 
 double OwnBody::bytesFor(const SelfConfig& config) {

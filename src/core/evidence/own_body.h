@@ -28,6 +28,7 @@ class OwnBody {
     int gain = 2;              ///< of a cell that is hit: beams between two cells hit each every other time,
     int loss = 1;              ///< so one that is missed loses less
     int body = 8;              ///< count from which a cell is the body's: hit from four places in a row
+    int suspect = 4;           ///< the same in the first places: hit from all of them, two at least
     int most = 20;             ///< a count grows no further: what has gone is forgotten after thirteen places
   };
 
@@ -59,6 +60,8 @@ class OwnBody {
   float farthestFrom(const Eigen::Vector3f& mounting) const;
   void beginTurn(const Scan& scan);
   void count();
+  int leastOfBody() const;
+  bool isBody(int cell) const;
 
   SelfConfig config_;
   Options options_;
@@ -67,6 +70,7 @@ class OwnBody {
   std::vector<std::uint8_t> counts_;  ///< by cell
   std::vector<std::uint8_t> hit_;     ///< by cell: in this turn
   bool has_place_ = false, is_counting_ = false;
+  int places_ = 0;                                        ///< that were counted
   bool is_found_ = false;                                 ///< some cell is the body's
   Eigen::Vector3f center_ = Eigen::Vector3f::Zero();      ///< of the cells, in the vehicle [m]
   Eigen::Vector3d last_place_ = Eigen::Vector3d::Zero();  ///< of the vehicle, counted last, in the odometry frame [m]

@@ -97,6 +97,7 @@ class EvidenceDetector : public Detector {
       parts_.relate(judged_, segments_);
       tracker_.update(judged_, segments_, predictions_, now, verdicts_, workers_);
       trimmer_.trim(judged_, segments_, verdicts_, proofs_, workers_);
+      loose_echoes_.join(sights_.newest(), judged_.roles, proofs_);
       parts_.settle(sights_.newest(), segments_, verdicts_, judged_);
       proofs_.resize(judged_.points.size());
     } else {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -39,7 +40,7 @@ class Sensor {
 
 Loose looseInThickAir(const Echoes& echoes) {
   LooseEchoes::Options thick;
-  thick.thick_air = -1.0;
+  thick.thick_air[0].share = -1.0;
   thick.least = 0.0;
   Sensor sensor(thick);
   sensor.looseIn(echoes);  // until something is known of the air
@@ -114,7 +115,7 @@ TEST(LooseEchoes, DropsAreAndTheWallBehindThemIsNot) {
 }
 
 TEST(LooseEchoes, AreNotToldApartInClearAir) {
-  const Echoes rain = wallWithDrops(0.03, 12, 2, 3), clear = wallWithDrops(0.002, 12, 2, 3);
+  const Echoes rain = wallWithDrops(0.03, 12, 2, 3), clear = wallWithDrops(0.0007, 12, 2, 3);
   const auto any = [](const Loose& loose) { return std::count(loose.begin(), loose.end(), 1) > 0; };
   EXPECT_TRUE(any(looseInThickAir(clear))) << "a few drops";
   Sensor sensor;
@@ -140,6 +141,78 @@ TEST(LooseEchoes, LeavesAreNoThickAir) {
   const Loose none(echoes.size(), 0);
   Sensor sensor;
   for (int i = 0; i < 10; ++i) EXPECT_EQ(sensor.looseIn(echoes), none) << i;
+}
+
+/// The wall, seen through a cloud 6 m ahead and 4 m deep.
+Echoes wallBehindACloud() {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> uniform(0.0F, 1.0F);
+  Echoes echoes = wallWithDrops(0.0, 6, 3, 1);
+  for (Eigen::Vector3f& echo : echoes) {
+    const float depth = uniform(random), stops = uniform(random);
+    const bool is_in_cloud = std::abs(echo.y() / echo.x()) < 0.2F && stops < 0.5F;
+    if (is_in_cloud) echo *= (4.0F + 4.0F * depth) / echo.x();
+  }
+  return echoes;
+}
+
+/// How many of the cloud's echoes, and of the wall's, are loose.
+std::array<double, 2> looseShares(const Echoes& echoes, const Loose& is_loose) {
+  std::array<double, 2> all{}, loose{};
+  for (std::size_t i = 0; i < echoes.size(); ++i) {
+    const std::size_t kind = echoes[i].x() < 14.0F ? 0 : 1;
+    ++all[kind];
+    loose[kind] += is_loose[i];
+  }
+  return {loose[0] / all[0], loose[1] / all[1]};
+}
+
+TEST(LooseEchoes, CloudsAre) {
+  const Echoes echoes = wallBehindACloud();
+  const auto [of_cloud, of_wall] = looseShares(echoes, looseInThickAir(echoes));
+  EXPECT_GT(of_cloud, 0.9);
+  EXPECT_LT(of_wall, 0.02);
+}
+
+TEST(LooseEchoes, InAPlumeWhatIsCloseByTells) {
+  const Echoes echoes = wallBehindACloud();
+  LooseEchoes::Options plume;
+  plume.thick_air = {LooseEchoes::Options::ThickAir{20.0, 1.0}, LooseEchoes::Options::ThickAir{8.0, -1.0}};
+  plume.least = 0.0;
+  Sensor sensor(plume);
+  sensor.looseIn(echoes);
+  const auto [of_cloud, of_wall] = looseShares(echoes, sensor.looseIn(echoes));
+  EXPECT_GT(of_cloud, 1.0 - 0.5 * (1.0 - looseShares(echoes, looseInThickAir(echoes))[0]))
+      << "half of the rest at least";
+  EXPECT_LT(of_wall, 0.02);
+}
+
+TEST(LooseEchoes, JoinWhatMovesCloseBy) {
+  LooseEchoes::Options thick;
+  thick.thick_air[0].share = -1.0;
+  thick.least = 0.0;
+  LooseEchoes finder(thick);
+  const Echoes echoes = wallWithDrops(0.0, 6, 3, 1);
+  SightPixels seen;
+  seen.project(echoes, std::vector<std::uint8_t>(echoes.size(), 1));
+  std::vector<ClusterRole> roles(echoes.size(), ClusterRole::kConnects);
+  finder.loosen(TurnPart::kWhole, 100.0, seen, roles);
+  // The left half moves; one echo of each half, and one at the border, is loose.
+  std::vector<Proof> proofs;
+  for (const Eigen::Vector3f& echo : echoes) proofs.push_back(echo.y() > 0.0F ? Proof::kEnteredFree : Proof::kNone);
+  const auto at = [&](float y) {
+    const auto nearest = std::min_element(echoes.begin(), echoes.end(), [&](const auto& a, const auto& b) {
+      const Eigen::Vector3f place(15.0F, y, 0.0F);
+      return (a - place).norm() < (b - place).norm();
+    });
+    return static_cast<std::size_t>(nearest - echoes.begin());
+  };
+  const std::size_t moving = at(2.0F), standing = at(-2.0F);
+  roles[moving] = roles[standing] = ClusterRole::kLoose;
+  proofs[moving] = Proof::kNone;
+  finder.join(seen, roles, proofs);
+  EXPECT_EQ(proofs[moving], Proof::kEnteredFree);
+  EXPECT_EQ(proofs[standing], Proof::kNone);
 }
 
 TEST(LooseEchoes, PolesAndFewEchoesAreNot) {

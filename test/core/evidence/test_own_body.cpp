@@ -47,12 +47,39 @@ class OwnBodyTest : public testing::Test {
 TEST_F(OwnBodyTest, IsWhatStaysNearTheSensorWhileTheVehicleMoves) {
   OwnBody body{SelfConfig()};
   EXPECT_EQ(found(body, at(0.0)), none_);
-  drive(body, 0.0, 1.3, 0.43);
-  EXPECT_EQ(found(body, at(1.3)), none_) << "three places prove nothing";
+  drive(body, 0.0, 0.5, 0.43);
+  EXPECT_EQ(found(body, at(0.5)), none_) << "one place proves nothing";
+  drive(body, 0.86, 1.3, 0.43);
+  EXPECT_EQ(found(body, at(1.3)), bonnet_) << "hit from all of the first places";
   drive(body, 1.3, 5.0, 0.43);
   EXPECT_EQ(found(body, at(5.0)), bonnet_);
   body.reset();
   EXPECT_EQ(found(body, at(5.0)), none_);
+}
+
+TEST_F(OwnBodyTest, ScattersAboutWhatStays) {
+  OwnBody body{SelfConfig()};
+  Scan scan;
+  const auto see = [&](const Eigen::Vector3f& echo) {
+    scan = at(scan.odom_from_base.translation().x() + 0.43);
+    scan.echoes = {echo};
+    learn(body, TurnPart::kWhole, scan);
+  };
+  const Eigen::Vector3f bonnet(1.6F, 0.2F, -0.7F), above = bonnet + Eigen::Vector3f(0.0F, 0.0F, 0.15F);
+  for (int place = 0; place < 10; ++place) see(bonnet);
+  const auto isBody = [&](const Eigen::Vector3f& echo) {
+    scan.echoes = {echo};
+    return found(body, scan)[0] != 0;
+  };
+  EXPECT_TRUE(isBody(bonnet));
+  EXPECT_FALSE(isBody(above)) << "nothing was there before";
+  see(above);
+  see(bonnet);
+  EXPECT_TRUE(isBody(above)) << "hit once, beside what stays";
+  const Eigen::Vector3f apart = bonnet + Eigen::Vector3f(0.0F, 0.0F, 0.45F);
+  see(apart);
+  see(bonnet);
+  EXPECT_FALSE(isBody(apart));
 }
 
 TEST_F(OwnBodyTest, IsNotFoundAtRest) {
