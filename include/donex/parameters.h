@@ -160,7 +160,7 @@ void visitMotion(MotionConfig& m, Visitor& visit) {
         m.odometry_check);
   visit(ParameterInfo{"odometry_refine", "",
                       "where odometry or tf never leave a plane, as those of wheels: take height, roll and pitch from "
-                      "the clouds",
+                      "the clouds, and mend noise of yaw",
                       false},
         m.odometry_refine);
 }

@@ -37,14 +37,15 @@ PlanarCompletion::PlanarCompletion(const Options& options)
     : options_(options),
       plane_(options.plane),
       selection_(selectionOf(options)),
-      registration_(outOfThePlane(options.registration)) {}
+      registration_(outOfThePlane(options.registration)),
+      whole_registration_(options.registration) {}
 
 void PlanarCompletion::reset() {
   plane_.reset();
   begin();
   to_keep_.clear();
   tilt_.setZero();
-  lift_ = 0.0;
+  lift_ = yaw_ = 0.0;
   completed_from_given_.setIdentity();
 }
 
@@ -84,7 +85,8 @@ void PlanarCompletion::climb(const Eigen::Isometry3d& odom_from_base) {
 
 void PlanarCompletion::find(double stamp) {
   const Eigen::Isometry3d prediction = completed();
-  const Registration registration = registration_.align(*map_, source_, prediction, options_.gate);
+  yaw_ = yawToMend(prediction);
+  const Registration registration = registration_.align(*map_, source_, completed(), options_.gate);
   if (isSound(registration, prediction)) {
     take(registration.map_from_sensor);
     return;
@@ -95,6 +97,15 @@ void PlanarCompletion::find(double stamp) {
   } else {
     to_keep_.clear();
   }
+}
+
+/// By which the given yaw is wrong, as far as the scans are to be believed.
+double PlanarCompletion::yawToMend(const Eigen::Isometry3d& prediction) {
+  const Registration registration = whole_registration_.align(*map_, source_, prediction, options_.gate);
+  if (!isSound(registration, prediction)) return 0.0;
+  const double yaw = rotationVectorOf(registration.map_from_sensor.linear() * given_.linear().transpose()).z();
+  if (std::abs(yaw) < options_.least_yaw) return 0.0;
+  return std::min(std::max(yaw, -options_.most_yaw), options_.most_yaw);
 }
 
 void PlanarCompletion::select(const std::vector<Eigen::Vector3f>& echoes, const Eigen::Isometry3d& base_from_sensor) {
@@ -119,14 +130,14 @@ bool PlanarCompletion::isSound(const Registration& registration, const Eigen::Is
 
 Eigen::Isometry3d PlanarCompletion::completed() const {
   Eigen::Isometry3d pose = given_;
-  pose.linear() = rotationBy(tilt_) * given_.linear();
+  pose.linear() = rotationBy(tilt_ + yaw_ * Eigen::Vector3d::UnitZ()) * given_.linear();
   pose.translation().z() += lift_;
   return pose;
 }
 
 void PlanarCompletion::take(const Eigen::Isometry3d& found) {
   tilt_ = rotationVectorOf(found.linear() * given_.linear().transpose());
-  tilt_.z() = 0.0;  // yaw stays as given
+  tilt_.z() = 0.0;  // yaw is found beforehand
   lift_ = found.translation().z() - given_.translation().z();
   predicted_since_.reset();
 }

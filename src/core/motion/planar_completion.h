@@ -1,4 +1,5 @@
-// Planar odometry completed: x, y and yaw stay as given; height, roll and pitch come from the scans.
+// Planar odometry completed: height, roll and pitch come from the scans; x and y stay as given, and so does yaw where
+// the scans do not contradict it.
 #pragma once
 
 #include <cstdint>
@@ -36,8 +37,8 @@ class PlaneWatch {
   bool has_first_ = false, has_moved_ = false, left_ = false;
 };
 
-/// Each scan is registered against a map of those before in three directions alone. Memory and time per scan are
-/// bounded. Not thread-safe.
+/// Each scan is registered against a map of those before in three directions alone, and once in all six for its yaw.
+/// Memory and time per scan are bounded. Not thread-safe.
 class PlanarCompletion {
  public:
   struct Options {
@@ -54,7 +55,12 @@ class PlanarCompletion {
     double least_fitting = 0.4;           ///< with a smaller share of these that fit, too
     double most_lift = 0.3;               ///< no vehicle is so much higher than predicted, from scan to scan [m]
     double most_tilt = 0.1;               ///< nor tilted by so much more [rad]
-    double new_map_after = 0.45;          ///< scans do not fit for so long: a new map begins [s]
+    /// Yaw stays as given where the scans differ by less [rad]: 3 cm at 50 m, as much as a range errs by. What a
+    /// registration errs by is to turn no odometry that is right.
+    double least_yaw = 6e-4;
+    /// And it is turned by no more, whatever the scans say [rad]: the check of odometry tells of more.
+    double most_yaw = 1e-2;
+    double new_map_after = 0.45;  ///< scans do not fit for so long: a new map begins [s]
   };
 
   PlanarCompletion() : PlanarCompletion(Options()) {}
@@ -80,6 +86,7 @@ class PlanarCompletion {
   bool isSound(const Registration& registration, const Eigen::Isometry3d& prediction) const;
   void climb(const Eigen::Isometry3d& odom_from_base);
   void find(double stamp);
+  double yawToMend(const Eigen::Isometry3d& prediction);
   void take(const Eigen::Isometry3d& found);
   Eigen::Isometry3d completed() const;
   void keep();
@@ -87,11 +94,12 @@ class PlanarCompletion {
   Options options_;
   PlaneWatch plane_;
   EchoSelection selection_;
-  std::optional<GaussianMap> map_;  // once it is needed
-  ScanRegistration registration_;
+  std::optional<GaussianMap> map_;                      // once it is needed
+  ScanRegistration registration_, whole_registration_;  // out of the plane, and in all directions
   // What the odometry lacks, in its own axes.
   Eigen::Vector3d tilt_ = Eigen::Vector3d::Zero();  // axis times angle [rad], along the ground
   double lift_ = 0.0;                               // [m]
+  double yaw_ = 0.0;                                // [rad]
   bool has_map_ = false;
   std::optional<double> predicted_since_;  // stamp of the first scan in a row that does not fit [s]
   Eigen::Isometry3d completed_from_given_ = Eigen::Isometry3d::Identity();

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -42,6 +43,11 @@ Eigen::Isometry3d mounting() {
   return base_from_sensor;
 }
 
+double yawBetween(const Eigen::Isometry3d& pose, const Eigen::Isometry3d& other) {
+  const Eigen::AngleAxisd turn(Eigen::Matrix3d(pose.linear() * other.linear().transpose()));
+  return std::abs(turn.angle() * turn.axis().z());
+}
+
 TEST(PlanarCompletion, FindsHeightRollAndPitchToTheSolversLastStep) {
   const auto world = courtyard();
   PlanarCompletion completion;
@@ -65,9 +71,40 @@ TEST(PlanarCompletion, KeepsPlaceAndYawAsGiven) {
         completion.complete(0.1 * i, seenFrom(truePose(i), world), Eigen::Isometry3d::Identity(), given);
     EXPECT_EQ(pose.translation().x(), given.translation().x());
     EXPECT_EQ(pose.translation().y(), given.translation().y());
-    const Eigen::AngleAxisd turn(Eigen::Matrix3d(pose.linear() * given.linear().transpose()));
-    EXPECT_LT(std::abs(turn.angle() * turn.axis().z()), 1e-12) << i;
+    EXPECT_LT(yawBetween(pose, given), 1e-12) << i;
   }
+}
+
+/// The largest yaw between poses found and those given, or true ones, where the given yaw is off by `error(scan)`
+/// [rad].
+template <class Error>
+double largestYaw(const Error& error, bool from_given) {
+  const auto world = courtyard();
+  PlanarCompletion completion;
+  double largest = 0.0;
+  for (int i = 0; i < 12; ++i) {
+    Eigen::Isometry3d given = planarPose(i);
+    given.rotate(Eigen::AngleAxisd(error(i), Eigen::Vector3d::UnitZ()));
+    const Eigen::Isometry3d pose =
+        completion.complete(0.1 * i, seenFrom(planarPose(i), world), Eigen::Isometry3d::Identity(), given);
+    largest = std::max(largest, yawBetween(pose, from_given ? given : planarPose(i)));
+  }
+  return largest;
+}
+
+TEST(PlanarCompletion, MendsNoiseOfYaw) {
+  const auto error = [](int scan) { return scan > 3 ? 0.004 * std::sin(2.5 * scan) : 0.0; };
+  EXPECT_LT(largestYaw(error, false), 6e-4);
+}
+
+TEST(PlanarCompletion, LeavesALittleYawAlone) {
+  const auto error = [](int scan) { return scan > 3 ? 4e-4 * std::sin(2.5 * scan) : 0.0; };
+  EXPECT_LT(largestYaw(error, true), 1e-7);
+}
+
+TEST(PlanarCompletion, TurnsNoOdometryByMoreThanItMay) {
+  const auto error = [](int scan) { return scan > 3 ? 0.05 : 0.0; };
+  EXPECT_NEAR(largestYaw(error, true), PlanarCompletion::Options().most_yaw, 1e-5);
 }
 
 TEST(PlanarCompletion, EndsWithoutAStepWhereOdometryLeavesItsPlane) {
