@@ -59,4 +59,15 @@ Pose poseFromMatrix(const PoseMatrix& matrix) {
   return {matrix.col(3), stablyNormalised(Eigen::Quaterniond(rotation))};
 }
 
+std::string poseLine(const Pose& pose) {
+  const PoseMatrix m = pose.isometry().matrix().topRows<3>();
+  std::string line;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      line += fmt::format("{}{:.17g}", line.empty() ? "" : " ", m(row, column));
+    }
+  }
+  return line + '\n';
+}
+
 }  // namespace donex

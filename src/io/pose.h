@@ -28,6 +28,9 @@ using PoseMatrix = Eigen::Matrix<double, 3, 4>;
 /// one.
 std::optional<std::string> faultOfPose(const PoseMatrix& matrix);
 
+/// A line of poses.txt, with its end: the twelve numbers of the matrix, row by row, to the last digit.
+std::string poseLine(const Pose& pose);
+
 /// Re-orthonormalised. The matrix must have no fault.
 Pose poseFromMatrix(const PoseMatrix& matrix);
 

@@ -19,17 +19,6 @@ void writeCloud(const fs::path& file, const SequenceScan& scan) {
   if (!stream) throw DataError(file.string() + ": cannot be written");
 }
 
-std::string poseLine(const Pose& pose) {
-  const PoseMatrix m = pose.isometry().matrix().topRows<3>();
-  std::string line;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 4; ++column) {
-      line += fmt::format("{}{:.17g}", line.empty() ? "" : " ", m(row, column));
-    }
-  }
-  return line + '\n';
-}
-
 /// What is there of another sequence would be overwritten, or taken for a part of the new one.
 void requireNoSequence(const fs::path& directory) {
   for (const char* name : {"velodyne", "labels"}) {

@@ -44,7 +44,9 @@ void prepareOutput(const Arguments& arguments) {
   }
   Outputs outputs(arguments.overwrite);
   outputs.addSequence(arguments.sequence);
-  outputs.requireIn(arguments.out, [](const std::string& name) { return isLabelFile(name) || name == "run.json"; });
+  outputs.requireIn(arguments.out, [](const std::string& name) {
+    return isLabelFile(name) || name == "run.json" || name == "poses.txt";
+  });
   createDirectory(arguments.out);
 }
 
@@ -129,6 +131,16 @@ void reportOdometry(const SequenceReader& sequence, const DriveRun& drive) {
              100.0 * drift.translation, drift.rotation * 180.0 / kPi);
 }
 
+/// As a sequence's own poses.txt, in a frame of their own.
+void writeFoundPoses(const fs::path& out, const DriveRun& drive) {
+  if (drive.tracked().empty()) return;
+  WholeFile file(out / "poses.txt");
+  for (const TrackedScan& tracked : drive.tracked()) {
+    file.stream() << poseLine(Pose::fromIsometry(tracked.odom_from_sensor));
+  }
+  file.commit();
+}
+
 void run(const CLI::App& app, const Arguments& arguments, const ConfigOptions& options) {
   const Config config = options.config();
   const SequenceReader sequence = openSequence(app, arguments.sequence);
@@ -142,7 +154,9 @@ void run(const CLI::App& app, const Arguments& arguments, const ConfigOptions& o
   reportOdometry(sequence, drive);
   reportCompletion(drive);
   reportCheck(drive);
-  if (!arguments.out.empty()) writeRunFigures(arguments.out, figuresOf(drive, config));
+  if (arguments.out.empty()) return;
+  writeRunFigures(arguments.out, figuresOf(drive, config));
+  writeFoundPoses(arguments.out, drive);
 }
 
 }  // namespace
@@ -152,7 +166,10 @@ int main(int argc, char** argv) {
   CLI::App app("Labels the echoes of a sequence (SemanticKITTI layout) dynamic or static.", "donex_sequence");
   donex::Arguments arguments;
   app.add_option("SEQ_DIR", arguments.sequence, "velodyne/NNNNNN.bin, poses.txt, times.txt, labels/")->required();
-  app.add_option("--out", arguments.out, "directory for NNNNNN.label (251 moving, 9 static); without it only figures");
+  app.add_option(
+      "--out", arguments.out,
+      "directory for NNNNNN.label (251 moving, 9 static), and for poses.txt where poses are found from the scans; "
+      "without it only figures");
   app.add_option("--frames", arguments.frames, "only the first N scans")->check(CLI::PositiveNumber);
   app.add_option("--odometry", arguments.odometry,
                  "given: the poses of poses.txt; lidar: found from the scans, and compared with those; by default " +

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "io/text_file.h"
 #include "programs/command.h"
 #include "support/sequences.h"
 #include "support/temporary_directory.h"
@@ -59,6 +60,17 @@ TEST_F(Programs, SequenceTakesOptions) {
   expect(0, "donex_2d, 0.6 m", DONEX_SEQUENCE, "--config config.yaml --config over.yaml seq");
   expect(0, "donex_2d, 0.5 m", DONEX_SEQUENCE, "--config over.yaml --config config.yaml seq");
   expect(0, "donex_2d, 0.3 m", DONEX_SEQUENCE, "--config config.yaml --set voxel_size=0.3 --set queue_size=3 seq");
+}
+
+TEST_F(Programs, SequenceWritesThePosesThatItFinds) {
+  expect(0, "8 scans, 80 echoes", DONEX_SEQUENCE, "seq --out given");
+  EXPECT_FALSE(fs::exists(path("given/poses.txt"))) << "they are the sequence's own";
+  expect(0, "odometry from the scans", DONEX_SEQUENCE, "seq --odometry lidar --out found");
+  Faults faults;
+  const auto lines = readLines(path("found/poses.txt"), faults);
+  ASSERT_TRUE(lines);
+  ASSERT_EQ(lines->size(), 8U);
+  for (const std::string& line : *lines) EXPECT_TRUE(parsePose(line, "found/poses.txt", faults)) << line;
 }
 
 TEST_F(Programs, SequenceWithoutLabelsIsNotScored) {
