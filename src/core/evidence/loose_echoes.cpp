@@ -29,8 +29,8 @@ void LooseEchoes::loosen(TurnPart part, double stamp, const SightPixels& seen, s
     const bool is_loose = !was_clear && count.neighbours > 0 && count.alike < options_.share * count.neighbours;
     if (is_loose) roles[i] = ClusterRole::kLoose;
   }
-  const bool is_plume =
-      !was_clear && !isThick(0);  // drops everywhere are close by to one another, and to what is solid
+  // Where drops are everywhere, some are close by to one another, and to what is solid.
+  const bool is_plume = !was_clear && !isThick(0);
   if (is_plume) smooth(seen, roles);
 }
 

@@ -40,8 +40,8 @@ class LooseEchoes {
       double range;  ///< [m]
       double share;
     };
-    /// Drops and second returns are everywhere: clear air has 0.44 % at most, light rain 0.65 % at least. Plumes are
-    /// beside the vehicle: 0.26 % at most (in foliage 0.57 %), in spray 0.69 % at least.
+    /// Drops and second returns are everywhere: clear air has 0.44 % at most, light rain 0.9 % at least. Plumes are
+    /// beside the vehicle: clear air has 0.26 % at most there (in foliage 0.57 %), spray 0.55 % at least.
     std::array<ThickAir, 2> thick_air = {ThickAir{20.0, 0.005}, ThickAir{8.0, 0.004}};
     double least = 10.0;     ///< of those, before anything is said: fewer are chance
     double interval = 0.5;   ///< clear air is looked at so often [s]: rain takes longer to begin
@@ -108,7 +108,7 @@ class LooseEchoes {
   double looked_ = -std::numeric_limits<double>::infinity();  ///< when the air was looked at last [s]
   bool looks_ = true;                                         ///< in this turn
   int lowest_row_ = 0, rows_ = 0;                             ///< that the cloud has
-  std::vector<std::uint32_t> first_in_;                       ///< by pixel: its first place in ranges_
+  std::vector<std::uint32_t> first_in_;                       ///< by pixel: its first place in order_
   std::vector<std::uint32_t> order_;                          ///< the echoes by pixel
   std::vector<std::uint32_t> turned_;                         ///< echoes that become loose, or solid
   std::vector<Joined> joined_;
