@@ -49,8 +49,7 @@ std::string OriginWatch::followApex(const Eigen::Vector3d& apex, const sensor_ms
   found_ = apex;
   return fmt::format(
       "the clouds are told in the vehicle's frame '{}', but their rings meet at x {:.2f}, y {:.2f}, z {:.2f} m: lines "
-      "of "
-      "sight begin there from now on; set sensor_frame, or origin_x, origin_y and origin_z, to begin there at once",
+      "of sight begin there from now on; set sensor_frame, or origin_x, origin_y and origin_z, to begin there at once",
       cloud.header.frame_id, apex.x(), apex.y(), apex.z());
 }
 

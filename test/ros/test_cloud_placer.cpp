@@ -3,7 +3,6 @@
 
 #include "core/motion/surfaces.h"
 #include "ros/cloud_placer.h"
-#include "ros/origin_watch.h"
 #include "ros/pipeline_rig.h"
 
 namespace donex {
@@ -121,36 +120,6 @@ TEST(CloudPlacer, CloudsThatStandStillTellNoMotion) {
   rig.pipeline.finish();
   EXPECT_TRUE(rig.labeled.empty());
   EXPECT_NE(rig.drops.at(0).find("stands still"), std::string::npos) << rig.drops[0];
-}
-
-TEST(CloudPlacer, KnowsAnOriginThatLiesOnTheGround) {
-  std::vector<Eigen::Vector3f> moved = testing::seenFrom(Eigen::Isometry3d::Identity(), testing::courtyard());
-  EXPECT_FALSE(liesOnTheGround(moved)) << "as the sensor measured it";
-  for (Eigen::Vector3f& echo : moved) echo.z() = echo.z() < 0.0F ? 0.01F : echo.z() + 1.7F;
-  EXPECT_TRUE(liesOnTheGround(moved));
-  EXPECT_FALSE(liesOnTheGround({}));
-}
-
-TEST(CloudPlacer, AnOriginOnTheGroundIsSaidOnce) {
-  std::vector<std::string> said;
-  PipelineEvents events;
-  events.labeled = [](const LabeledScan&) {};
-  events.dropped = [](DropReason, const std::string& text) { ADD_FAILURE() << text; };
-  events.refused = [](OdometryRefusal, const std::string& text) { ADD_FAILURE() << text; };
-  events.forgotten = events.strange_times = [](const std::string&) {};
-  events.strange_origin = [&](const std::string& text) { said.push_back(text); };
-  tf2::BufferCore tf;
-  Pipeline pipeline(smallConfig(), tf, events);
-  auto echoes = testing::seenFrom(Eigen::Isometry3d::Identity(), testing::courtyard());
-  for (Eigen::Vector3f& echo : echoes) echo.z() = echo.z() < 0.0F ? 0.01F : echo.z() + 1.7F;
-  for (int i = 0; i < 12; ++i) {
-    const double stamp = kStart + 0.1 * i;
-    pipeline.addOdometry(test::odometryAt(stamp));
-    pipeline.addCloud(test::plainCloud(echoes, stamp, "base_link"), stamp);
-    pipeline.step(stamp);
-  }
-  ASSERT_EQ(said.size(), 1U);
-  EXPECT_NE(said[0].find("origin_x"), std::string::npos) << said[0];
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 namespace donex {
 
 struct RingApexOptions {
-  std::size_t echoes = 6000;        ///< that are used, spread evenly over the cloud
+  std::size_t echoes = 6000;        ///< about so many are used, spread evenly over the cloud
   std::size_t least_of_ring = 20;   ///< with fewer a ring tells nothing
   std::size_t least_rings = 4;      ///< of so many echoes
   int rounds = 12;                  ///< of the adjustment
@@ -26,9 +26,9 @@ struct RingApexOptions {
 /// their apex: the sensor. Adjusts apex and common axis to all rings at once, by robust least squares of sines of
 /// elevations.
 ///
-/// `rings` has the number of each echo's ring, `echoes` their positions in any frame [m]; echoes that are not finite
-/// are left out. Returns the apex in that frame [m]; nothing where the rings do not determine it within the options'
-/// bounds.
+/// `rings` has the number of each echo's ring, one entry per echo, `echoes` their positions in any frame [m]; echoes
+/// that are not finite are left out. Returns the apex in that frame [m]; nothing where the rings do not determine it
+/// within the options' bounds.
 std::optional<Eigen::Vector3d> findRingApex(const std::vector<Eigen::Vector3f>& echoes,
                                             const std::vector<std::uint32_t>& rings,
                                             const RingApexOptions& options = {});
