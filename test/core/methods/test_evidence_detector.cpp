@@ -159,23 +159,6 @@ TEST_P(BothGrids, TheOwnBodyDoesNotMove) {
   EXPECT_LT(countMoving(config()), before / 5);
 }
 
-TEST_P(BothGrids, PeopleKeepTheirEdgesInRain) {
-  constexpr std::size_t kWarmUp = 8;  // until the rain is seen, and people have moved
-  simulation::DisturbanceOptions disturbance;
-  disturbance.rain = 0.02;
-  const std::vector<TrueScan> drive = simulatedDrive("crowd", 64, 14, 1, disturbance);
-  const auto labels = labelsOf(config(), drive);
-  std::size_t moving = 0, found = 0;
-  for (std::size_t k = kWarmUp; k < drive.size(); ++k) {
-    for (std::size_t i = 0; i < drive[k].truth.size(); ++i) {
-      const bool moves = drive[k].truth[i] > 250;
-      moving += moves ? 1U : 0U;
-      found += moves && labels[k].dynamic[i] != 0 ? 1U : 0U;
-    }
-  }
-  EXPECT_GT(static_cast<double>(found), 0.88 * static_cast<double>(moving)) << "0.91 found; 0.83 without their edges";
-}
-
 TEST_P(BothGrids, EmptyScansAreScans) {
   const auto detector = makeDetector(config());
   EchoLabels labels;
