@@ -67,6 +67,7 @@ void LidarOdometry::reset() {
   usual_fitting_ = 0.0;
   lost_since_.reset();
   has_track_ = is_anchored_ = false;
+  doubt_ = 0;
   determined_at_ = 0.0;
   to_keep_.clear();
 }
@@ -131,9 +132,7 @@ void LidarOdometry::follow(const Cloud& cloud) {
   map_.moveTo(prediction.translation());
   Registration registration = registered(prediction, elapsed);
   correct(cloud, elapsed, registration);
-  // A velocity that is known is kept by little; that little does not find one.
-  const bool is_in_doubt = !is_anchored_ && registration.undetermined == 0;
-  if (is_in_doubt && slides(registration)) leaveOpen(prediction, registration);
+  distrust(prediction, registration);
   if (isSound(registration, prediction, elapsed)) {
     accept(registration, prediction, stamp);
   } else {
@@ -172,9 +171,10 @@ Registration LidarOdometry::registered(const Eigen::Isometry3d& prediction, doub
       has_velocity ? options_.search_step : std::min(options_.search_reach, options_.search_speed * elapsed);
   const Registration second = registration_.align(map_, source_, searched(prediction, reach), options_.search_step);
   // Along a tunnel everything fits: where the velocity is known it tells more.
-  const bool is_open = has_velocity && second.undetermined > 0;
+  const bool is_open = second.undetermined > 0;
   const double fitness = fitnessAt(first.map_from_sensor, 1);
-  const bool is_better = fitnessAt(second.map_from_sensor, 1) > options_.better_fitness * fitness;
+  const double least = std::max(options_.better_fitness * fitness, fitness + options_.least_better);
+  const bool is_better = fitnessAt(second.map_from_sensor, 1) > least;
   return is_better && !is_open ? second : first;
 }
 
@@ -182,19 +182,27 @@ bool LidarOdometry::isUsual(const Registration& registration) const {
   return registration.undetermined == 0 && shareFitting(registration) > options_.usual_share * usual_fitting_;
 }
 
-/// Whether a scan fits about as well all along a direction on the ground, as between parallel barriers: what holds it
-/// there may be the traffic that keeps pace.
+/// What holds a scan that slides is not trusted, nor is the scan after it that happens not to.
+void LidarOdometry::distrust(const Eigen::Isometry3d& prediction, Registration& registration) {
+  doubt_ = slides(registration) ? options_.scans_of_doubt + 1 : std::max(0, doubt_ - 1);
+  if (doubt_ > 0 && registration.undetermined == 0) leaveOpen(prediction, registration);
+}
+
+/// Whether a scan fits about as well all along a direction on the ground, as between parallel barriers.
 bool LidarOdometry::slides(const Registration& registration) {
   constexpr std::size_t kEnoughToSlide = 1000;  // echoes
   constexpr double kSteep = 0.7;                // of the unit vector's height: no vehicle slides up
   if (std::abs(registration.weakest.z()) > kSteep) return false;
   const std::size_t stride = std::max<std::size_t>(1, source_.size() / kEnoughToSlide);
-  const Eigen::Vector3d slide = options_.slide_distance * registration.weakest;
   const Eigen::Isometry3d& pose = registration.map_from_sensor;
-  const double in_place = fitnessAt(pose, stride);
-  const double beside = std::max(fitnessAt(Eigen::Translation3d(slide) * pose, stride),
-                                 fitnessAt(Eigen::Translation3d(-slide) * pose, stride));
-  return beside > options_.slide_fitness * in_place;
+  double ahead = 0.0, behind = 0.0;
+  for (const double distance : options_.slide_distances) {
+    const Eigen::Vector3d slide = distance * registration.weakest;
+    ahead += fitnessAt(Eigen::Translation3d(slide) * pose, stride);
+    behind += fitnessAt(Eigen::Translation3d(-slide) * pose, stride);
+  }
+  const double beside = std::max(ahead, behind) / static_cast<double>(options_.slide_distances.size());
+  return beside >= options_.slide_fitness * fitnessAt(pose, stride);
 }
 
 /// The least determined direction is left to the prediction.

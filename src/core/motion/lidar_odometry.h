@@ -51,9 +51,13 @@ class LidarOdometry {
     double search_reach = 4.0;      ///< and has not come farther since the first scan [m]
     double search_step = 0.5;       ///< between starts that are tried [m]
     std::vector<double> search_yaws{-0.12, -0.08, -0.05, -0.025, 0.025, 0.05, 0.08, 0.12};  ///< tried as well [rad]
-    double slide_distance = 0.5;      ///< at a start a scan that fits as well so far on tells nothing there [m]
-    double slide_fitness = 0.93;      ///< as well: this share of how well it fits in place
+    /// A scan that fits about as well on average so far on [m], to the better side, tells nothing of that direction:
+    /// where one barrier looks like the next, what holds it in place may be traffic that keeps pace.
+    std::vector<double> slide_distances{2.0, 2.5, 3.0, 3.5, 4.0};
+    double slide_fitness = 0.75;      ///< about as well: this share of how well it fits in place
+    int scans_of_doubt = 2;           ///< after such a scan: as many that do not slide are not trusted yet
     double better_fitness = 1.02;     ///< what is found from elsewhere has to fit better by this factor
+    double least_better = 0.002;      ///< and by so much: a few echoes on an open plain fit anywhere
     double usual_share = 0.93;        ///< with a smaller share of the usual fitting echoes other starts are tried
     double sound_share = 0.7;         ///< a smaller share of the usual fitting echoes is a loss
     double least_fitting = 0.4;       ///< a smaller share of fitting echoes is a loss
@@ -103,6 +107,7 @@ class LidarOdometry {
   void correct(const Cloud& cloud, double elapsed, Registration& registration);
   Eigen::Isometry3d predicted(double stamp) const;
   Registration registered(const Eigen::Isometry3d& prediction, double elapsed);
+  void distrust(const Eigen::Isometry3d& prediction, Registration& registration);
   bool slides(const Registration& registration);
   void leaveOpen(const Eigen::Isometry3d& prediction, Registration& registration) const;
   bool isUsual(const Registration& registration) const;
@@ -127,7 +132,8 @@ class LidarOdometry {
   double usual_fitting_ = 0.0;        // share of fitting echoes, fading
   std::optional<double> lost_since_;  // stamp of the first scan in a row [s]
   bool has_track_ = false;
-  bool is_anchored_ = false;    // the velocity was found in scans that leave no doubt of it
+  int doubt_ = 0;                        // scans that are not trusted yet
+  bool is_anchored_ = false;             // the velocity was found in scans that leave no doubt of it
   double determined_at_ = 0.0;  // stamp of the newest scan that left nothing open [s]
   // Of the scan in hand.
   double first_ = 0.0, last_time_ = 0.0;  // of its times [s]

@@ -139,12 +139,15 @@ Registration ScanRegistration::align(GaussianMap& map, const std::vector<Eigen::
 
 double ScanRegistration::fitness(GaussianMap& map, const std::vector<Eigen::Vector3f>& echoes,
                                  const Eigen::Isometry3d& pose, double kernel, std::size_t stride) const {
+  constexpr float kLevel = 0.8F;  // of a normal's height: ground
   double sum = 0.0;
   std::size_t count = 0;
   for (std::size_t i = 0; i < echoes.size(); i += stride, ++count) {
     const Eigen::Vector3d point = pose * echoes[i].cast<double>();
     const SurfaceMatch match = map.surfaceAt(point);
     if (match.surface == nullptr) continue;
+    const bool is_ground = !match.is_pole && std::abs(match.surface->normal.z()) > kLevel;
+    if (is_ground) continue;
     const Eigen::Vector3d offset = point - match.mean;
     const double along = match.surface->normal.cast<double>().dot(offset);
     const double squared = match.is_pole ? offset.squaredNorm() - along * along : along * along;
