@@ -182,8 +182,10 @@ bool LidarOdometry::isUsual(const Registration& registration) const {
   return registration.undetermined == 0 && shareFitting(registration) > options_.usual_share * usual_fitting_;
 }
 
-/// What holds a scan that slides is not trusted, nor is the scan after it that happens not to.
+/// What holds a scan that slides is not trusted, nor is the scan after it that happens not to. One that matches nothing
+/// tells nothing of this either: two sensors that look different ways take turns.
 void LidarOdometry::distrust(const Eigen::Isometry3d& prediction, Registration& registration) {
+  if (registration.undetermined == 6) return;
   doubt_ = slides(registration) ? options_.scans_of_doubt + 1 : std::max(0, doubt_ - 1);
   if (doubt_ > 0 && registration.undetermined == 0) leaveOpen(prediction, registration);
 }

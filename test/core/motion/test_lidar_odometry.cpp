@@ -161,6 +161,23 @@ TEST(LidarOdometry, TakesNoTrafficThatKeepsPaceForTheWorld) {
   }
 }
 
+TEST(LidarOdometry, AScanThatMatchesNothingCastsNoDoubtOnTheNext) {
+  const auto world = courtyard();
+  const SteadyDrive drive{{{5.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}};
+  LidarOdometry odometry;
+  for (int i = 0; i < 6; ++i) {
+    const Eigen::Isometry3d truth = drive.poseAt(0.1 * i);
+    const std::vector<Eigen::Vector3f> ahead = seenFrom(truth, world);
+    std::vector<Eigen::Vector3f> elsewhere;
+    for (const Eigen::Vector3f& echo : ahead) elsewhere.emplace_back(echo + Eigen::Vector3f(0.0F, 0.0F, 60.0F));
+    const TrackedScan tracked = odometry.locate(0.1 * i, ahead);
+    const bool is_known = i > 1;
+    EXPECT_EQ(tracked.status, is_known ? TrackingStatus::kTracking : TrackingStatus::kStarting) << i;
+    EXPECT_LT(distanceBetween(tracked.odom_from_sensor, truth), 1e-3) << i;
+    EXPECT_EQ(odometry.locate(0.1 * i, elsewhere).status, TrackingStatus::kLost) << i;
+  }
+}
+
 TEST(LidarOdometry, NeverJumpsByAStrangeCloudAndRecovers) {
   const auto world = courtyard();
   const SteadyDrive drive = bendingDrive();
