@@ -15,6 +15,9 @@ struct Scan {
   double stamp = 0.0;
   /// Echoes in the sensor frame [m]. A non-finite echo keeps its place and is never dynamic.
   std::vector<Eigen::Vector3f> echoes;
+  /// 1 for each echo behind another one of the same beam. Empty: the detector looks for them itself, by direction, in
+  /// echoes as they were measured; whoever moves echoes (de-skewing) looks before.
+  std::vector<std::uint8_t> second_returns;
   /// Mounting: sensor coordinates to vehicle coordinates.
   Eigen::Isometry3d base_from_sensor = Eigen::Isometry3d::Identity();
   /// Ego motion at `stamp`: vehicle coordinates to odometry coordinates.

@@ -225,6 +225,7 @@ void Pipeline::label(const WaitingCloud& waiting, const ScanMotion& motion) {
     no_returns_ = removeNoReturns(sensor.cast<float>(), scan_.echoes);
     moveEchoes(*motion.sensor_from_cloud, scan_.echoes);
   }
+  findSecondReturns(originOf(waiting).cast<float>());
   if (motion.track != nullptr) {
     const MotionFault fault =
         deskew(*motion.track, scan_.stamp, scan_.base_from_sensor, times_.after_stamp, scan_.echoes);
@@ -248,6 +249,12 @@ void Pipeline::label(const WaitingCloud& waiting, const ScanMotion& motion) {
   given_.learn(labels_.dynamic);
   tellStrangeTimes(clockOf(waiting));
   followTimes(motion, clockOf(waiting));
+}
+
+/// Before de-skewing turns the two echoes of a beam into different directions.
+void Pipeline::findSecondReturns(const Eigen::Vector3f& sensor) {
+  scan_.second_returns = second_returns_.find(scan_.echoes, sensor);
+  scan_.second_returns.resize(scan_.echoes.size(), 0);
 }
 
 /// Of a motion that is found in the clouds: what it says of itself.
@@ -355,6 +362,7 @@ void Pipeline::reset() {
   clocks_.reset();
   given_.reset();
   detector_->reset();
+  second_returns_.reset();
   flood_.reset();
 }
 

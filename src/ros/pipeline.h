@@ -13,6 +13,7 @@
 #include <sensor_msgs/PointCloud2.h>
 #include <tf2/buffer_core.h>
 
+#include "core/sight/second_returns.h"
 #include "donex/detector.h"
 #include "ros/cloud_order.h"
 #include "ros/cloud_placer.h"
@@ -145,6 +146,7 @@ class Pipeline {
   void dropSuspect();
   void watchFlood();
   void suspectOrigin(const ScanMotion& motion, const WaitingCloud& waiting);
+  void findSecondReturns(const Eigen::Vector3f& sensor);
   void followTrack(const ScanMotion& motion);
   void followOdometry(const ScanMotion& motion);
   void completeOdometry(const ScanMotion& motion);
@@ -183,6 +185,7 @@ class Pipeline {
   std::size_t parsed_ = 0;     // the number of the cloud that scan_ and times_ hold
   double parsing_time_ = 0.0;  // [s]
   Scan scan_;
+  SecondReturns second_returns_;
   NoReturns no_returns_;
   CloudRemarks remarks_;
   std::array<bool, kCloudRemarks> remarked_{};  // kinds that have been told

@@ -6,6 +6,7 @@
 
 #include "ros/pipeline_rig.h"
 #include "simulated_lidar/simulation_messages.h"
+#include "simulation/disturbance.h"
 #include "simulation/sensor_model.h"
 #include "simulation/sweep.h"
 #include "support/simulated_drive.h"
@@ -75,7 +76,8 @@ Scene roundabout() {
 
 /// A drive through it as messages, labelled by the pipeline as a node's would be.
 struct Drive {
-  Drive(bool distortion, bool deskew, OdometrySource source = OdometrySource::kPose) {
+  Drive(bool distortion, bool deskew, OdometrySource source = OdometrySource::kPose,
+        const simulation::DisturbanceOptions& disturbance = {}) {
     const Scene scene = roundabout();
     const auto sensor = simulation::makeSensorModel(kBeams);
     simulation::SensorOptions options;
@@ -91,6 +93,7 @@ struct Drive {
       const double stamp = 10.0 + kPeriod * i;
       scan_.stamp = stamp;
       sweep.measure(stamp, static_cast<std::size_t>(i), scan_.echoes, scan_.labels);
+      simulation::Disturbance(disturbance, 1).apply(static_cast<std::size_t>(i), scan_.echoes, scan_.labels);
       for (double time = stamp - kPeriod; time < stamp + 0.5 * kOdometryStep; time += kOdometryStep) {
         OdometrySample sample;
         sample.stamp = time;
@@ -159,6 +162,13 @@ TEST(DeskewedLabels, AreThoseOfUndistortedScansByAMotionFoundInThem) {
   RecordProperty("iou_distorted", std::to_string(distorted.score.iou()));
   EXPECT_NEAR(deskewed.score.iou(), undistorted.score.iou(), 0.02);
   EXPECT_LT(distorted.score.iou(), deskewed.score.iou() - 0.05) << "the distortion matters";
+}
+
+TEST(DeskewedLabels, SecondReturnsAreFoundBeforeTheirBeamsAreTurnedApart) {
+  simulation::DisturbanceOptions dual;
+  dual.dual_returns = 0.2;
+  const Drive plain(true, true), disturbed(true, true, OdometrySource::kPose, dual);
+  EXPECT_NEAR(disturbed.score.iou(), plain.score.iou(), 1e-3);
 }
 
 }  // namespace

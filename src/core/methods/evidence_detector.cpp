@@ -18,6 +18,7 @@
 #include "core/objects/segmenter.h"
 #include "core/objects/trimmer.h"
 #include "core/pi.h"
+#include "core/sight/second_returns.h"
 
 namespace donex {
 namespace {
@@ -55,6 +56,10 @@ DONEX_WIDE_LOOPS void giveRoles(const float* heights, const std::uint8_t* inside
     roles[i] = static_cast<ClusterRole>(connects * static_cast<int>(ClusterRole::kConnects) +
                                         follows * static_cast<int>(ClusterRole::kFollows));
   }
+}
+
+double meanOf(const std::vector<std::uint8_t>& marks) {
+  return static_cast<double>(std::count(marks.begin(), marks.end(), 1)) / static_cast<double>(marks.size());
 }
 
 /// What both grids share; `PlaceJudge` is what differs between them.
@@ -113,6 +118,7 @@ class EvidenceDetector : public Detector {
     ground_now_ = ground_before_ = GroundCount();
     sights_.reset();
     own_body_.reset();
+    second_returns_.reset();
     loose_echoes_.reset();
     parts_.reset();
     tracker_.reset();
@@ -133,7 +139,11 @@ class EvidenceDetector : public Detector {
   }
 
   std::size_t cloudsPerTurn() const override { return sights_.turns().cloudsPerTurn(); }
-  std::optional<MeasuredSensor> measuredSensor() const override { return sights_.measured(); }
+  std::optional<MeasuredSensor> measuredSensor() const override {
+    std::optional<MeasuredSensor> sensor = sights_.measured();
+    if (sensor) sensor->second_returns = second_share_;
+    return sensor;
+  }
   bool lacksGround() const override { return lacks_ground_; }
 
   GridOutline outline() const override { return places_.window().outline(); }
@@ -147,13 +157,13 @@ class EvidenceDetector : public Detector {
     const std::size_t decided =
         segments_.memoryBytes() + predictions_.capacity() * sizeof(Prediction) + verdicts_.capacity() * sizeof(Verdict);
     return in_grid + judged + decided + places_.memoryBytes() + sights_.memoryBytes() + own_body_.memoryBytes() +
-           loose_echoes_.memoryBytes() + ground_.memoryBytes() + segmenter_.memoryBytes() + trimmer_.memoryBytes() +
-           tracker_.memoryBytes() + parts_.memoryBytes();
+           second_returns_.memoryBytes() + loose_echoes_.memoryBytes() + ground_.memoryBytes() +
+           segmenter_.memoryBytes() + trimmer_.memoryBytes() + tracker_.memoryBytes() + parts_.memoryBytes();
   }
 
  private:
-  /// Every frame once: in voxels, in metres, and what lies between them and the odometry. The own body takes part in
-  /// nothing.
+  /// Every frame once: in voxels, in metres, and what lies between them and the odometry. The own body and second
+  /// returns take part in nothing.
   void enter(const Scan& scan) {
     const GridWindow& window = places_.window();
     window.beginScan(scan, in_voxels_);
@@ -163,12 +173,21 @@ class EvidenceDetector : public Detector {
     resizeTo(judged_.points, scan.echoes.size());
     resizeTo(judged_.is_echo, scan.echoes.size());
     resizeTo(judged_.is_solid, scan.echoes.size());
+    const std::vector<std::uint8_t>& second =
+        scan.second_returns.empty() ? second_returns_.find(scan.echoes) : scan.second_returns;
+    second_share_ = second.empty() ? 0.0 : meanOf(second);
     forEachStretch(workers_, scan.echoes.size(), [&](std::size_t first, std::size_t last) {
       window.enterSome(scan, first, last, in_voxels_);
       placeSomePoints(window, in_voxels_, first, last, judged_.points, judged_.is_echo);
+      leaveOutSecond(second, first, last);
       std::copy_n(judged_.is_echo.data() + first, last - first, judged_.is_solid.data() + first);
       own_body_.leaveOut(scan, first, last, judged_.is_solid);
     });
+  }
+
+  void leaveOutSecond(const std::vector<std::uint8_t>& second, std::size_t first, std::size_t last) {
+    if (second.empty()) return;
+    for (std::size_t i = first; i < last; ++i) judged_.is_echo[i] &= static_cast<std::uint8_t>(1 - second[i]);
   }
 
   /// Whether hardly an echo in the region lies on what was found, or many lie beneath it: then somebody has removed the
@@ -179,7 +198,8 @@ class EvidenceDetector : public Detector {
       ground_now_ = GroundCount();
     }
     for (std::size_t i = 0; i < judged_.points.size(); i += options_.ground_stride) {
-      if (in_voxels_.inside[i] == 0) continue;
+      const bool is_asked = (in_voxels_.inside[i] & judged_.is_solid[i]) != 0;
+      if (!is_asked) continue;
       const float height = ground_.heightOfEcho(i, judged_.points[i].z());
       ++ground_now_.inside;
       ground_now_.beneath += height < -options_.ground_roughness ? 1U : 0U;
@@ -286,6 +306,7 @@ class EvidenceDetector : public Detector {
   ScanClock clock_;
   SightHistory sights_;
   OwnBody own_body_;
+  SecondReturns second_returns_;
   LooseEchoes loose_echoes_;
   Ground ground_;
   Segmenter segmenter_;
@@ -301,6 +322,7 @@ class EvidenceDetector : public Detector {
   Verdicts verdicts_;
   std::vector<Proof> proofs_;               ///< per echo
   GroundCount ground_now_, ground_before_;  ///< of this turn, and of the turn before
+  double second_share_ = 0.0;
   bool lacks_ground_ = false;
 };
 

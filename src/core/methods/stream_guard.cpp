@@ -19,6 +19,8 @@ void check(const Eigen::Isometry3d& pose, const char* name) {
 void StreamGuard::admit(const Scan& scan) {
   check(scan.odom_from_base, "pose of the vehicle");
   check(scan.base_from_sensor, "mounting of the sensor");
+  const bool has_returns = scan.second_returns.empty() || scan.second_returns.size() == scan.echoes.size();
+  if (!has_returns) throw std::invalid_argument("second returns: an entry per echo is needed, or none");
   const bool is_in_order = scan.stamp >= last_stamp_ && std::isfinite(scan.stamp);
   if (!is_in_order) {
     throw std::invalid_argument("scan at " + std::to_string(scan.stamp) + " s is earlier than the last one at " +
