@@ -60,6 +60,7 @@ ObjectTracker::Track ObjectTracker::newTrack(std::uint32_t id, double stamp, con
   track.first_seen = track.last_seen = stamp;
   track.center = segment.center();
   track.extent = track.full_extent = segment.extent();
+  track.rest = {segment.low, segment.high, stamp};
   return track;
 }
 
@@ -162,6 +163,9 @@ void ObjectTracker::follow(Track& track, double stamp, const Segment& segment) c
   track.extent = segment.extent();
   track.full_extent = track.extent.cwiseMax(std::exp(-elapsed / options_.extent_time) * track.full_extent);
   track.last_seen = stamp;
+  const Eigen::Array3d low_shift = (segment.low - track.rest.low).array().abs();
+  const Eigen::Array3d high_shift = (segment.high - track.rest.high).array().abs();
+  if (low_shift.max(high_shift).maxCoeff() > options_.rest_shift) track.rest = {segment.low, segment.high, stamp};
 }
 
 void ObjectTracker::testMotion(Track& track, const MotionTests& tests, double stamp, const Segment& segment) const {
@@ -186,7 +190,9 @@ void ObjectTracker::testMotion(Track& track, const MotionTests& tests, double st
 
 /// All proofs of motion, those of the whole segment first.
 Proof ObjectTracker::proofOf(const Track& track, const MotionTests& tests, double stamp, const Segment& segment) const {
-  if (!rules_.isThin(segment, sensor_) && !tests.hangs(segment)) {
+  // Signs tell what has moved within the last second; its box tells that it has stopped since.
+  const bool rests = stamp - track.rest.since >= options_.rests_after;
+  if (!rests && !rules_.isThin(segment, sensor_) && !tests.hangs(segment)) {
     if (isBelieved(track.receding, stamp)) return Proof::kRearReceded;
     if (isBelieved(track.shifting, stamp)) return Proof::kShapeElsewhere;
     if (isBelieved(track.advancing, stamp)) return Proof::kEndsMoved;

@@ -23,6 +23,8 @@ struct TrackerOptions {
   double moves_on = 1.0;          ///< after it was seen to move as one, an object does so still [s]
   double moves_on_speed = 5.0;    ///< a hedge that comes into view step by step seems slower [m/s]
   double released_after = 0.3;    ///< but its parts are released sooner [s]
+  double rest_shift = 0.15;       ///< of any side of an object's box: less is noise [m]
+  double rests_after = 0.45;      ///< without more than that the object has stopped [s]
   double extent_time = 0.95;      ///< over which the extent seen before is forgotten [s]
   double whole_rim = 0.5;         ///< around an object that moves as one: fragments in it are its own [m]
   double settled_fragment = 0.2;  ///< share of settled echoes from which a fragment is not
@@ -67,12 +69,18 @@ class ObjectTracker {
     double since_ = kNotSeen;
   };
 
+  /// A box that has stayed as it is, nearly.
+  struct Rest {
+    Eigen::Vector3d low, high;
+    double since = 0.0;
+  };
   struct Track {
     std::uint32_t id = 0;
     Eigen::Vector3d center, extent, velocity = Eigen::Vector3d::Zero();
     Eigen::Vector3d full_extent;  ///< as seen when less of it was hidden
     double first_seen = 0.0, last_seen = 0.0;
     double last_motion = kNever, last_moved_whole = kNever;
+    Rest rest;
     Sign receding, advancing, shifting;
     bool dynamic = false, ever_dynamic = false;
     TraceHistory::Id trace;  ///< its last one

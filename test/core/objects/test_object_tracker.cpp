@@ -191,15 +191,34 @@ TEST(ObjectTracker, WhatStandsNeverMovesHoweverTheSensorPassesIt) {
 TEST(ObjectTracker, WhatStopsStaysDynamicForTheStopTime) {
   for (const double stop_time : {0.0, 0.45, 1.05}) {
     ObjectConfig config;
+    config.motion = false;  // its places alone tell
     config.stop_time = stop_time;
     Followed followed(config);
     for (int k = 0; k < 25; ++k) {
       JudgedScene scene(0.1 * k);
-      addVehicle(scene, 8.0, 2.0, k < 10 ? Place::kNew : Place::kUnobserved);
+      addVehicle(scene, 8.0 + 0.3 * std::min(k, 9), 2.0, k < 10 ? Place::kNew : Place::kUnobserved);
       const bool expected = 0.1 * (k - 9) <= stop_time;
       EXPECT_EQ(followed.step(scene) > 0, expected) << "scan " << k << " stop_time " << stop_time;
       ASSERT_EQ(followed.tracker.objects().size(), 1U) << "it has moved since it is followed";
       EXPECT_EQ(followed.tracker.objects()[0].dynamic, expected);
+    }
+  }
+}
+
+TEST(ObjectTracker, WhatRestsHasStoppedHoweverNewItsPlaceIs) {
+  const ObjectConfig config;
+  const TrackerOptions options;
+  Followed followed(config);
+  for (int k = 0; k < 25; ++k) {
+    JudgedScene scene(0.1 * k);
+    const int braked = std::min(k, 5);
+    addVehicle(scene, 8.0 + 0.5 * braked, 2.0, Place::kNew);
+    const double resting = 0.1 * (k - 5), stops = options.rests_after + config.stop_time;
+    const std::size_t moving = followed.step(scene);
+    if (resting < stops - 0.09) {
+      EXPECT_GT(moving, 0U) << "scan " << k;
+    } else if (resting > stops + 0.01) {
+      EXPECT_EQ(moving, 0U) << "scan " << k;
     }
   }
 }
@@ -222,7 +241,7 @@ TEST(ObjectTracker, WhatSettlesStandsAtOnce) {
   Followed followed;
   for (int k = 0; k < 14; ++k) {
     JudgedScene scene(0.1 * k);
-    addVehicle(scene, 8.0, 2.0, k < 10 ? Place::kNew : Place::kSettled);
+    addVehicle(scene, 8.0 + 0.3 * std::min(k, 9), 2.0, k < 10 ? Place::kNew : Place::kSettled);
     EXPECT_EQ(followed.step(scene) > 0, k < 10) << "scan " << k;
   }
 }
