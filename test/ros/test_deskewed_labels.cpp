@@ -86,6 +86,7 @@ struct Drive {
     Config config;
     config.motion.deskew = deskew;
     config.motion.source = source;
+    config.motion.odometry_refine = false;  // the poses are true
     tf2::BufferCore tf;
     tf.setTransform(mountingOf(scene.ego.base_from_sensor, 1.0, {}), "test", true);
     Pipeline pipeline(config, tf, events());
