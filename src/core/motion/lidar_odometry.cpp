@@ -49,6 +49,13 @@ const char* describe(TrackingStatus status) {
   return "lost";
 }
 
+RegistrationOptions LidarOdometry::registrationOfScans() {
+  RegistrationOptions options;
+  options.least_information = 0.001;  // open country holds no more; slides() asks for what that lets pass
+  options.counts_ground = false;
+  return options;
+}
+
 Eigen::Isometry3d LidarOdometry::Step::during(double duration) const {
   if (!isKnown()) return Eigen::Isometry3d::Identity();
   return interpolate(Eigen::Isometry3d::Identity(), motion, duration / time);
@@ -170,7 +177,7 @@ Registration LidarOdometry::registered(const Eigen::Isometry3d& prediction, doub
   const double reach =
       has_velocity ? options_.search_step : std::min(options_.search_reach, options_.search_speed * elapsed);
   const Registration second = registration_.align(map_, source_, searched(prediction, reach), options_.search_step);
-  // Along a tunnel everything fits: where the velocity is known it tells more.
+  // Along a tunnel everything fits, and the prediction tells more.
   const bool is_open = second.undetermined > 0;
   const double fitness = fitnessAt(first.map_from_sensor, 1);
   const double least = std::max(options_.better_fitness * fitness, fitness + options_.least_better);

@@ -43,7 +43,7 @@ class LidarOdometry {
   struct Options {
     EchoSelection::Options selection;
     GaussianMap::Options map;
-    RegistrationOptions registration;
+    RegistrationOptions registration = registrationOfScans();
     std::size_t least_echoes = 50;  ///< fewer are no scan to register
     double first_gate = 2.0;        ///< how far a prediction may be off at the start [m]
     double least_gate = 0.3;        ///< and when all goes well [m]
@@ -69,6 +69,10 @@ class LidarOdometry {
     double new_track_after = 0.45;    ///< a loss lasts so long: a new track begins [s]
     double longest_prediction = 1.0;  ///< then a vehicle is taken to stand [s]
   };
+
+  /// Little information is enough, since `slide_distances` are asked, too, and the ground tells nothing of x, y and
+  /// yaw.
+  static RegistrationOptions registrationOfScans();
 
   LidarOdometry() : LidarOdometry(Options()) {}
   explicit LidarOdometry(const Options& options);
@@ -132,8 +136,8 @@ class LidarOdometry {
   double usual_fitting_ = 0.0;        // share of fitting echoes, fading
   std::optional<double> lost_since_;  // stamp of the first scan in a row [s]
   bool has_track_ = false;
-  int doubt_ = 0;                        // scans that are not trusted yet
-  bool is_anchored_ = false;             // the velocity was found in scans that leave no doubt of it
+  int doubt_ = 0;               // scans that are not trusted yet
+  bool is_anchored_ = false;    // the velocity was found in scans that leave no doubt of it
   double determined_at_ = 0.0;  // stamp of the newest scan that left nothing open [s]
   // Of the scan in hand.
   double first_ = 0.0, last_time_ = 0.0;  // of its times [s]

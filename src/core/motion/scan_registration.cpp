@@ -147,7 +147,7 @@ double ScanRegistration::fitness(GaussianMap& map, const std::vector<Eigen::Vect
     const SurfaceMatch match = map.surfaceAt(point);
     if (match.surface == nullptr) continue;
     const bool is_ground = !match.is_pole && std::abs(match.surface->normal.z()) > kLevel;
-    if (is_ground) continue;
+    if (is_ground && !options_.counts_ground) continue;
     const Eigen::Vector3d offset = point - match.mean;
     const double along = match.surface->normal.cast<double>().dot(offset);
     const double squared = match.is_pole ? offset.squaredNorm() - along * along : along * along;

@@ -22,9 +22,11 @@ struct RegistrationOptions {
   double done_rotation = 1e-5;     ///< a smaller step is the last [rad]
   double inlier_distance = 0.3;    ///< an echo nearer to its surface fits [m]
   /// Information a used echo gives on a direction (0: none, 1/3: on all alike) below which that is undetermined.
-  double least_information = 0.001;
+  double least_information = 0.008;
   /// x, y and yaw are found, too; else the prediction stands in them, and height, roll and pitch alone are found.
   bool along_ground = true;
+  /// fitness() counts echoes on the ground. It fits wherever the vehicle is, and best where its rings lie as before.
+  bool counts_ground = true;
   double longest_arm = 5.0;  ///< turns are compared with translations by the way of an echo at most this far away [m]
 };
 
@@ -47,8 +49,7 @@ class ScanRegistration {
   Registration align(GaussianMap& map, const std::vector<Eigen::Vector3f>& echoes, const Eigen::Isometry3d& prediction,
                      double gate) const;
 
-  /// How well the echoes fit at `pose`: the mean weight of an echo, 0 to 1, with a kernel of `kernel` [m]. Echoes on
-  /// the ground weigh nothing: it fits wherever the vehicle is, and best where the rings lie as before.
+  /// How well the echoes fit at `pose`: the mean weight of an echo, 0 to 1, with a kernel of `kernel` [m].
   double fitness(GaussianMap& map, const std::vector<Eigen::Vector3f>& echoes, const Eigen::Isometry3d& pose,
                  double kernel, std::size_t stride) const;
 
