@@ -249,7 +249,8 @@ MotionAnswer MotionSource::fromScans(const ScanTimes& times, const std::string& 
   const double stamp = times.stamp.toSec();
   const Eigen::Isometry3d before = scan_odometry_.odomFromBase();
   const EgoMotion& track = scan_odometry_.track();
-  const double moment_before = track.empty() ? 0.0 : track.newestStamp();
+  const double stamp_before = scan_odometry_.stamp();
+  const bool is_under_way = !track.empty();
   ScanMotion motion;
   const std::vector<float> none;
   motion.tracked = scan_odometry_.locate(stamp, echoes, times.of_echoes != nullptr ? *times.of_echoes : none, mounting);
@@ -261,8 +262,8 @@ MotionAnswer MotionSource::fromScans(const ScanTimes& times, const std::string& 
   motion.odom_from_base = scan_odometry_.odomFromBase();
   motion.odom_frame = frameName(config_.fixed_frame);
   motion.base_frame = mounted_frame_;
-  const double elapsed = motion.tracked->moment - moment_before;
-  const bool has_velocity = !motion.tracked->is_new_track && elapsed > 0.0;
+  const double elapsed = stamp - stamp_before;
+  const bool has_velocity = is_under_way && !motion.tracked->is_new_track && elapsed > 0.0;
   if (has_velocity) motion.twist = twistBetween(before, motion.odom_from_base, elapsed);
   const bool is_covered = track.poseAt(stamp + times.first) && track.poseAt(stamp + times.last);
   if (times.spanTime() && is_covered) motion.track = &track;  // not of the first scan of a track

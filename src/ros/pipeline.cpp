@@ -264,7 +264,7 @@ void Pipeline::followTrack(const ScanMotion& motion) {
   const bool is_another_track = motion.tracked->is_new_track && order_.newestLabeled();
   if (!is_another_track) return;
   reset();
-  events_.forgotten("the ego motion was lost, and is found anew in the clouds: the grid is forgotten");
+  events_.forgotten("the ego motion was lost or not known yet, and is found anew in the clouds: the grid is forgotten");
 }
 
 /// What the grid remembers lies elsewhere after a jump: all of it would look new.

@@ -70,6 +70,34 @@ TEST(ScanOdometry, TwoSensorsOfOneVehicleShareItsMotion) {
   }
 }
 
+/// Echoes in a sector of `sectors`, from behind on.
+std::vector<Eigen::Vector3f> sectorOf(const std::vector<Eigen::Vector3f>& echoes, int sector, int sectors) {
+  std::vector<Eigen::Vector3f> kept;
+  for (const Eigen::Vector3f& echo : echoes) {
+    const double turned = 0.5 + static_cast<double>(std::atan2(echo.y(), echo.x())) / (2.0 * M_PI);
+    if (static_cast<int>(turned * sectors) == sector) kept.push_back(echo);
+  }
+  return kept;
+}
+
+TEST(ScanOdometry, PartsOfATurnAreRegisteredTogether) {
+  constexpr int kParts = 4, kTurns = 15;
+  const auto world = testing::courtyard();
+  ScanOdometry odometry;
+  for (int i = 0; i < kTurns * kParts; ++i) {
+    const double time = 0.1 / kParts * i;
+    Eigen::Isometry3d odom_from_base = Eigen::Isometry3d::Identity();
+    odom_from_base.translation().x() = 3.0 * std::max(0.0, time - 0.3);
+    const auto echoes = sectorOf(testing::seenFrom(odom_from_base, world), i % kParts, kParts);
+    const TrackedScan& tracked = odometry.locate(kStart + time, echoes, {}, Eigen::Isometry3d::Identity());
+    EXPECT_NE(tracked.status, TrackingStatus::kLost) << i;
+    EXPECT_FALSE(tracked.is_new_track && i > 0) << i;
+    odometry.learn(std::vector<std::uint8_t>(echoes.size(), 0));
+    const double error = (odometry.odomFromBase().translation() - odom_from_base.translation()).norm();
+    EXPECT_LT(error, time < 0.8 ? 0.5 : 0.02) << "part " << i;
+  }
+}
+
 TEST(ScanOdometry, ASecondSensorThatTfDoesNotPlaceIsDropped) {
   PipelineRig rig(smallConfig(OdometrySource::kLidar), false);
   drive(rig, 5);
