@@ -164,7 +164,11 @@ bool Pipeline::step(double now) {
   if (waiting_.empty()) return false;
   WaitingCloud& oldest = waiting_.front();
   oldest.arrival = std::min(oldest.arrival, now);  // a clock set back must not make it wait for ever
-  const bool settle = now - oldest.arrival >= config_.motion.odometry_timeout;
+  // What the motion comes from is chosen once, not for each cloud: of many small ones none may wait for so long.
+  const bool is_chosen = motion_.source() != OdometrySource::kAuto;
+  first_arrival_ = std::min(first_arrival_, oldest.arrival);
+  const double since = is_chosen ? oldest.arrival : first_arrival_;
+  const bool settle = now - since >= config_.motion.odometry_timeout;
   const MotionAnswer motion = motionOf(oldest, settle);
   const auto* missing = std::get_if<MotionMissing>(&motion);
   if (missing != nullptr && missing->may_come && !settle) return false;

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -186,6 +187,7 @@ class Pipeline {
   double parsing_time_ = 0.0;  // [s]
   Scan scan_;
   SecondReturns second_returns_;
+  double first_arrival_ = std::numeric_limits<double>::infinity();  // of a cloud [s]
   NoReturns no_returns_;
   CloudRemarks remarks_;
   std::array<bool, kCloudRemarks> remarked_{};  // kinds that have been told

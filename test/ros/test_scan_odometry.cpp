@@ -70,6 +70,18 @@ TEST(ScanOdometry, TwoSensorsOfOneVehicleShareItsMotion) {
   }
 }
 
+TEST(ScanOdometry, AutoTakesTheCloudsHoweverManyOfThemWait) {
+  const Config config = smallConfig(OdometrySource::kAuto);
+  const double step = 0.5 * config.motion.odometry_timeout / config.node.queue_size;
+  PipelineRig rig(config, false);
+  for (int i = 0; i < 4 * config.node.queue_size; ++i) {
+    const double stamp = kStart + step * i;
+    rig.pipeline.addCloud(cloudAt(stamp), stamp);
+    rig.run(stamp);
+  }
+  EXPECT_GT(rig.labeled.size(), static_cast<std::size_t>(config.node.queue_size));
+}
+
 /// Echoes in a sector of `sectors`, from behind on.
 std::vector<Eigen::Vector3f> sectorOf(const std::vector<Eigen::Vector3f>& echoes, int sector, int sectors) {
   std::vector<Eigen::Vector3f> kept;
