@@ -7,12 +7,11 @@ namespace donex {
 namespace {
 
 constexpr float kCell = 2e-3F;  // of directions [rad]: many times what is the same, and less than beams lie apart
-constexpr float kNoDirection = 1e-3F;  // [m]: nearer there is no direction
+constexpr float kNoDirection = 1e-3F;      // [m]: nearer there is no direction
+constexpr std::size_t kMostAround = 4096;  // echoes that are asked at a time: room for them is set aside at once
 
 /// Cells are counted from -1 on, with a margin, so that cutting off is rounding down.
 Eigen::Array3i cellOf(const Eigen::Array3f& direction) { return ((direction + 1.01F) / kCell).cast<int>(); }
-
-constexpr std::size_t kMostAround = 4096;  // echoes that are asked at a time: room for them is set aside at once
 
 bool hasDirection(const Eigen::Vector3f& ray) {
   return ray.allFinite() && ray.squaredNorm() > kNoDirection * kNoDirection;
