@@ -1,12 +1,14 @@
 #include "core/objects/motion_tests.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 namespace donex {
 namespace {
 
-constexpr std::size_t kPresentPoints = 4 * TraceHistory::kPoints;
+constexpr std::size_t kPresentPoints = 4 * Trace::kMostPoints;
 
 /// Some echoes of a segment.
 struct Points {
@@ -43,10 +45,63 @@ FormerPlace MotionTests::lookBack(const Trace& trace) const {
 bool MotionTests::hasMoved(const Trace& trace, const Segment& segment) const {
   const bool is_placed_well = segment.echoes.size() >= options_.many_echoes;
   const MotionTestOptions::Step& step = is_placed_well ? options_.step_of_many : options_.step;
-  const double shift = (segment.center() - trace.center).head<2>().norm();
+  const double shift = (segment.center() - trace.center()).head<2>().norm();
   const bool worth_asking =
       !SegmentRules::isMostlySettled(segment) && trace.size() >= options_.least_points && shift >= step.shift;
   return worth_asking && hasLeft(trace, step.margin) && fitsElsewhere(trace, segment, step.shift);
+}
+
+bool MotionTests::isDisplaced(const Trace& trace, const Segment& segment, bool world_is_placed) const {
+  const MotionTestOptions::Displacement& rule = options_.displacement;
+  const bool is_described = segment.echoes.size() >= rule.least_echoes && trace.size() >= rule.least_points;
+  const bool is_flat = segment.extent().z() < rule.flat * segment.extent().head<2>().maxCoeff();
+  if (!is_described || is_flat) return false;
+  const Eigen::Vector2d low = (segment.low - trace.low).head<2>(), high = (segment.high - trace.high).head<2>();
+  const double shift = 0.5 * (low + high).norm();
+  const double least = (world_is_placed ? rule.least : rule.least_unknown) + seemsShifted(trace, segment);
+  const bool is_rigid = (low - high).norm() <= std::max(rule.ends_noise, rule.ends_differ * shift);
+  if (!is_rigid || shift < rule.least || shift > rule.most) return false;
+  // Where one end frays or is hidden, the other one tells how far it went.
+  Fits best;
+  for (const Eigen::Vector2d& by : {low, high, Eigen::Vector2d(0.5 * (low + high)), Eigen::Vector2d(low.x(), high.y()),
+                                    Eigen::Vector2d(high.x(), low.y())}) {
+    const Fits fits = fitsAlone(trace, by);
+    if (fits.there - fits.here > best.there - best.here) best = fits;
+  }
+  return best.shift >= least && best.there >= rule.telling_share * static_cast<double>(trace.size()) &&
+         best.here <= rule.contrary_share * best.there;
+}
+
+/// What something round that stands seems to shift by as another side of it comes into view [m].
+double MotionTests::seemsShifted(const Trace& trace, const Segment& segment) const {
+  const Eigen::Vector3d sensor = scan_.odom_from_points * scan_.sensor.cast<double>();
+  const Eigen::Vector2d then = (trace.center() - trace.seen_from).head<2>();
+  const Eigen::Vector2d now = (segment.center() - sensor).head<2>();
+  const double turn = std::abs(std::atan2(then.x() * now.y() - then.y() * now.x(), then.dot(now)));
+  return turn * std::min(options_.displacement.round, 0.5 * segment.extent().head<2>().maxCoeff());
+}
+
+MotionTests::Fits MotionTests::fitsAlone(const Trace& trace, const Eigen::Vector2d& shift) const {
+  const auto surface = static_cast<float>(options_.displacement.surface);
+  const double half_spacing = 0.5 * scan_.beams_apart;
+  const int rows = static_cast<int>(std::ceil(half_spacing / static_cast<double>(SightPixels::kRowHeight)));
+  Fits fits;
+  fits.shift = shift.norm();
+  for (const Eigen::Vector3d& in_odom : trace) {
+    const Eigen::Vector3d shifted(in_odom.x() + shift.x(), in_odom.y() + shift.y(), in_odom.z());
+    const Eigen::Vector3f here = (points_from_odom_ * in_odom).cast<float>();
+    const SightImage::Sight at_here = now_.ofNearestBeam(here, surface, rows);
+    const SightImage::Sight at_there = now_.ofNearestBeam((points_from_odom_ * shifted).cast<float>(), surface, rows);
+    if (at_here == SightImage::Sight::kUnknown || at_there == SightImage::Sight::kUnknown) continue;
+    const bool fits_here = at_here == SightImage::Sight::kSurface, fits_there = at_there == SightImage::Sight::kSurface;
+    // What hides the point may be the object itself, come nearer; anything else says nothing.
+    const auto come_nearer = static_cast<float>(fits.shift) + surface;
+    const bool tells = at_here != SightImage::Sight::kHidden ||
+                       now_.ofNearestBeam(here, come_nearer, rows) == SightImage::Sight::kSurface;
+    fits.there += fits_there && !fits_here && tells ? 1 : 0;
+    fits.here += fits_here && !fits_there ? 1 : 0;
+  }
+  return fits;
 }
 
 bool MotionTests::hangs(const Segment& segment) const {
@@ -83,7 +138,7 @@ bool MotionTests::fitsElsewhere(const Trace& trace, const Segment& segment, doub
   visitSome(scan_, segment, kPresentPoints,
             [&](const Eigen::Vector3d& point) { present.in_odom[present.count++] = point; });
   // From centre to centre, which another view of the same object displaces, to the best fit.
-  Eigen::Vector3d shift = segment.center() - trace.center;
+  Eigen::Vector3d shift = segment.center() - trace.center();
   int fitting = 0;
   for (int round = 1; round <= options_.fit_rounds; ++round) {
     const double reach = round < options_.fit_rounds ? 2.0 * options_.fit_distance : options_.fit_distance;

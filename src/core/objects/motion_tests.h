@@ -27,6 +27,21 @@ struct MotionTestOptions {
   double stands_below = 1.2;                     ///< what begins lower may stand behind a fence or a parked car [m]
   double beneath_margin = 0.5;                   ///< so near is a surface that lies beneath [m]
   std::size_t points_beneath = 16;               ///< that are looked at
+
+  /// What tells that an object stands elsewhere than it did.
+  struct Displacement {
+    std::size_t least_echoes = 100, least_points = 10;  ///< of the object, and of its trace: it is described well
+    double least = 0.12;                                ///< shift, where the world's is known [m]
+    double least_unknown = 0.3;                         ///< and where it is not [m]
+    double most = 1.5;                                  ///< farther away it is something else [m]
+    double ends_differ = 0.65;                          ///< of the shift: by how much those of its two ends may differ
+    double ends_noise = 0.15;                           ///< and by as much in any case [m]
+    double surface = 0.15;                              ///< so near to a point its surface is [m]
+    double telling_share = 0.15;                        ///< of the trace must fit only where it is now
+    double contrary_share = 0.1;                        ///< of those may fit only where it was
+    double flat = 0.15;                                 ///< height by length: what is flatter is a patch of ground
+    double round = 0.5;                                 ///< radius of what shows another side from another place [m]
+  } displacement;
 };
 
 /// The line of sight's own history: what stood there has left, or stands there still, or is not known.
@@ -48,12 +63,25 @@ class MotionTests {
   /// Slower objects than lookBack() sees, and objects behind fences, where careful sight knows nothing.
   bool hasMoved(const Trace& trace, const Segment& segment) const;
 
+  /// True where many points of the trace fit what is seen now only where the segment has gone, and hardly any only
+  /// where it was. Asks nothing of what it slides along or leaves behind, so it tells motions of a hand's breadth.
+  /// `world_is_placed`: how the world seems to have shifted is known, and taken from the trace.
+  bool isDisplaced(const Trace& trace, const Segment& segment, bool world_is_placed) const;
+
   /// True where the segment begins high above ground and what lies beneath is seen: nothing holds it there that moves.
   bool hangs(const Segment& segment) const;
 
  private:
   bool hasLeft(const Trace& trace, double margin) const;
   bool fitsElsewhere(const Trace& trace, const Segment& segment, double least_shift) const;
+  double seemsShifted(const Trace& trace, const Segment& segment) const;
+
+  /// Points of a trace, by where alone they fit what is seen now.
+  struct Fits {
+    double shift = 0.0;  ///< [m]
+    int there = 0, here = 0;
+  };
+  Fits fitsAlone(const Trace& trace, const Eigen::Vector2d& shift) const;
 
   const JudgedScan& scan_;
   const MotionTestOptions& options_;

@@ -15,10 +15,12 @@ void ObjectTracker::predict(const JudgedScan& scan, Predictions& predictions) co
     const bool is_of_this_turn = scan.continues_turn && followed.turn == turn_;
     if (is_of_this_turn && !followed.before) continue;
     const Track& track = is_of_this_turn ? *followed.before : followed.now;
-    if (!track.dynamic) continue;
-    const bool goes_on =
-        scan.stamp - track.last_moved_whole < options_.moves_on && track.velocity.norm() > options_.moves_on_speed;
-    predictions.push_back({track.centerAt(scan.stamp), track.extent, track.full_extent, goes_on});
+    const bool is_displaced = track.displaced.isSeen();
+    if (!track.dynamic && !is_displaced) continue;
+    const bool goes_on = track.dynamic && scan.stamp - track.last_moved_whole < options_.moves_on &&
+                         track.velocity.norm() > options_.moves_on_speed;
+    predictions.push_back(
+        {track.centerAt(scan.stamp), track.extent, track.full_extent, goes_on, is_displaced, track.dynamic});
   }
 }
 
@@ -34,6 +36,7 @@ void ObjectTracker::update(const JudgedScan& scan, const Segments& segments, con
   for (std::size_t i = 0; i < segments.size(); ++i) {
     if (!rules_.isTooLong(segments[i])) followOn(i, scan.stamp, segments[i]);
   }
+  if (config_.motion) placeWorld(scan.stamp, segments);
   // Each has a track of its own, and asks for traces of earlier scans.
   const auto judge = [&](std::size_t i) {
     if (rules_.isTooLong(segments[i])) return;
@@ -168,13 +171,31 @@ void ObjectTracker::follow(Track& track, double stamp, const Segment& segment) c
   if (low_shift.max(high_shift).maxCoeff() > options_.rest_shift) track.rest = {segment.low, segment.high, stamp};
 }
 
-void ObjectTracker::testMotion(Track& track, const MotionTests& tests, double stamp, const Segment& segment) const {
-  bool receded = false, advanced = false, moved = false;
-  // What was cut out where it was predicted cannot prove by its place that it went there.
+/// How the world seems to have shifted, from what is followed.
+void ObjectTracker::placeWorld(double stamp, const Segments& segments) {
   Trace trace;
-  const bool may_tell = !segment.cut_out && !SegmentRules::isMostlySettled(segment);
-  for (const double ago : options_.look_back) {
-    if (!may_tell || !traces_.find(track.trace, stamp - ago, trace)) continue;
+  for (std::size_t k = 0; k < shifts_.size(); ++k) {
+    shifts_[k].begin(sensor_);
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+      const bool tells = segments[i].echoes.size() >= options_.places_world && !segments[i].is_of_two_turns &&
+                         !rules_.isTooLong(segments[i]);
+      if (tells && traces_.find(trackOf(i).trace, stamp - options_.look_back[k], trace)) {
+        shifts_[k].add(trace, segments[i]);
+      }
+    }
+    shifts_[k].solve();
+  }
+}
+
+void ObjectTracker::testMotion(Track& track, const MotionTests& tests, double stamp, const Segment& segment) const {
+  bool receded = false, advanced = false, moved = false, displaced = false;
+  Trace trace;
+  for (std::size_t k = 0; k < options_.look_back.size(); ++k) {
+    // What was cut out where it was predicted cannot prove by its place that it went there.
+    if (segment.cut_out || !traces_.find(track.trace, stamp - options_.look_back[k], trace)) continue;
+    trace.move(shifts_[k].nowFromThen());
+    displaced = displaced || (!segment.is_of_two_turns && tests.isDisplaced(trace, segment, shifts_[k].isKnown()));
+    if (SegmentRules::isMostlySettled(segment)) continue;
     const FormerPlace former = tests.lookBack(trace);
     receded |= former.left >= config_.min_echoes && former.left > former.still;
     advanced |= former.left >= test_options_.least_left && segment.new_echoes >= config_.min_echoes;
@@ -186,6 +207,7 @@ void ObjectTracker::testMotion(Track& track, const MotionTests& tests, double st
   track.receding.see(receded, stamp);
   track.advancing.see(advanced, stamp);
   track.shifting.see(moved, stamp);
+  track.displaced.see(displaced, stamp);
 }
 
 /// All proofs of motion, those of the whole segment first.
@@ -194,7 +216,7 @@ Proof ObjectTracker::proofOf(const Track& track, const MotionTests& tests, doubl
   const bool rests = stamp - track.rest.since >= options_.rests_after;
   if (!rests && !rules_.isThin(segment, sensor_) && !tests.hangs(segment)) {
     if (isBelieved(track.receding, stamp)) return Proof::kRearReceded;
-    if (isBelieved(track.shifting, stamp)) return Proof::kShapeElsewhere;
+    if (isBelieved(track.shifting, stamp) || isBelieved(track.displaced, stamp)) return Proof::kShapeElsewhere;
     if (isBelieved(track.advancing, stamp)) return Proof::kEndsMoved;
     if (rules_.isNew(segment) && !rules_.isPole(segment) && !rules_.isNewOverhead(segment, sensor_))
       return Proof::kEnteredFree;
@@ -207,7 +229,9 @@ Proof ObjectTracker::proofOf(const Track& track, const MotionTests& tests, doubl
 Verdict ObjectTracker::decide(Track& track, const MotionTests& tests, double stamp, const Segment& segment) const {
   const Proof proof = proofOf(track, tests, stamp, segment);
   const bool is_proven_now = proof != Proof::kNone && proof != Proof::kMovedBefore;
-  if (isBelieved(track.receding, stamp) || isBelieved(track.shifting, stamp)) track.last_moved_whole = stamp;
+  const bool is_moved_whole =
+      isBelieved(track.receding, stamp) || isBelieved(track.shifting, stamp) || isBelieved(track.displaced, stamp);
+  if (is_moved_whole) track.last_moved_whole = stamp;
   if (is_proven_now) track.last_motion = stamp;
   track.dynamic = proof != Proof::kNone;
   track.ever_dynamic = track.ever_dynamic || track.dynamic;
@@ -252,7 +276,8 @@ void ObjectTracker::reset() {
 
 std::size_t ObjectTracker::memoryBytes() const {
   return tracks_.capacity() * sizeof(Followed) + pairs_.capacity() * sizeof(Pair) + traces_.memoryBytes() +
-         (track_of_.capacity() + claim_of_.capacity()) * sizeof(int) + objects_.capacity() * sizeof(Object);
+         (track_of_.capacity() + claim_of_.capacity()) * sizeof(int) + shifts_[0].memoryBytes() +
+         shifts_[1].memoryBytes() + shifts_[2].memoryBytes() + objects_.capacity() * sizeof(Object);
 }
 
 }  // namespace donex

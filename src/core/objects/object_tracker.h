@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/grid/workers.h"
+#include "core/objects/apparent_shift.h"
 #include "core/objects/motion_tests.h"
 #include "donex/object.h"
 
@@ -26,6 +27,7 @@ struct TrackerOptions {
   double rest_shift = 0.15;       ///< of any side of an object's box: less is noise [m]
   double rests_after = 0.45;      ///< without more than that the object has stopped [s]
   double extent_time = 0.95;      ///< over which the extent seen before is forgotten [s]
+  std::size_t places_world = 50;  ///< echoes of an object that tells how the world seems to have shifted, at least
   double whole_rim = 0.5;         ///< around an object that moves as one: fragments in it are its own [m]
   double settled_fragment = 0.2;  ///< share of settled echoes from which a fragment is not
 };
@@ -36,7 +38,7 @@ struct TrackerOptions {
 ///  - where its former place is now seen free: its rear has receded. This finds a vehicle ahead at the
 ///    ego vehicle's own speed, whose front nobody sees and whose rear only ever enters its own shadow;
 ///  - where a little of both is true: the ends of a long vehicle that passes by;
-///  - where its former shape fits it at another place, and is gone from the old one.
+///  - where its former shape fits it at another place, and is gone from the old one, or fits only there.
 class ObjectTracker {
  public:
   explicit ObjectTracker(const ObjectConfig& config, const TrackerOptions& options = {});
@@ -62,6 +64,7 @@ class ObjectTracker {
   class Sign {
    public:
     void see(bool is_seen, double stamp) { since_ = is_seen ? std::min(since_, stamp) : kNotSeen; }
+    bool isSeen() const { return since_ < kNotSeen; }
     double seenFor(double stamp) const { return stamp - since_; }  ///< [s], negative where it is not seen
 
    private:
@@ -81,7 +84,7 @@ class ObjectTracker {
     double first_seen = 0.0, last_seen = 0.0;
     double last_motion = kNever, last_moved_whole = kNever;
     Rest rest;
-    Sign receding, advancing, shifting;
+    Sign receding, advancing, shifting, displaced;
     bool dynamic = false, ever_dynamic = false;
     TraceHistory::Id trace;  ///< its last one
 
@@ -115,6 +118,7 @@ class ObjectTracker {
   Track& trackOf(std::size_t segment_index) { return tracks_[static_cast<std::size_t>(track_of_[segment_index])].now; }
   void follow(Track& track, double stamp, const Segment& segment) const;
   bool isBelieved(const Sign& sign, double stamp) const { return sign.seenFor(stamp) >= options_.believed_after; }
+  void placeWorld(double stamp, const Segments& segments);
   void testMotion(Track& track, const MotionTests& tests, double stamp, const Segment& segment) const;
   Proof proofOf(const Track& track, const MotionTests& tests, double stamp, const Segment& segment) const;
   Verdict decide(Track& track, const MotionTests& tests, double stamp, const Segment& segment) const;
@@ -127,6 +131,7 @@ class ObjectTracker {
   MotionTestOptions test_options_;
   Eigen::Vector3d sensor_ = Eigen::Vector3d::Zero();  ///< of the present scan, odometry frame [m]
   TraceHistory traces_;
+  std::array<ApparentShift, 3> shifts_;  ///< of the world, since each of the times to look back
   std::vector<Followed> tracks_;
   std::vector<Pair> pairs_;
   std::vector<int> claim_of_;  ///< by segment: the track that it goes on with, or -1

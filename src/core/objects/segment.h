@@ -85,11 +85,13 @@ struct Verdict {
 /// One per segment.
 using Verdicts = std::vector<Verdict>;
 
-/// Where a moving object that is followed should be now, odometry frame [m].
+/// Where an object that is followed and moves, or seems to, should be now, odometry frame [m].
 struct Prediction {
   Eigen::Vector3d center, extent;
   Eigen::Vector3d full_extent;  ///< as seen when less of it was hidden
   bool moves_whole = false;     ///< it was seen to move as a whole not long ago
+  bool is_displaced = false;    ///< all of it was seen elsewhere in the scan before
+  bool is_proven = true;        ///< its motion; else it only seemed to be displaced so far
 };
 using Predictions = std::vector<Prediction>;
 

@@ -80,16 +80,16 @@ void Segmenter::cutOut(const JudgedScan& scan, const Prediction& object, std::si
 
 bool Segmenter::isMixed(const Segment& segment, const Predictions& predictions) const {
   if (rules_.isNew(segment)) return false;
+  // The side of a long object settles as it slides along itself, but what was seen elsewhere is one all the same.
   const auto is_it = [&](const Prediction& object) {
-    return rules_.isLong(object.extent) && rules_.looksLike(segment, object);
+    const bool is_one = object.is_displaced || (object.is_proven && !SegmentRules::isMostlySettled(segment));
+    return is_one && rules_.isLong(object.extent) && rules_.looksLike(segment, object);
   };
-  const bool is_known =
-      !SegmentRules::isMostlySettled(segment) && std::any_of(predictions.begin(), predictions.end(), is_it);
-  if (is_known) return false;
+  if (std::any_of(predictions.begin(), predictions.end(), is_it)) return false;
   const std::size_t unsettled = segment.echoes.size() - static_cast<std::size_t>(segment.settled_echoes);
   const bool has_parts = unsettled >= options_.least_part &&
                          segment.settled_echoes >= options_.least_settled * static_cast<double>(unsettled);
-  const auto is_within = [&](const Prediction& object) { return rules_.holds(segment, object); };
+  const auto is_within = [&](const Prediction& object) { return object.is_proven && rules_.holds(segment, object); };
   const bool hides_an_object = has_parts && std::any_of(predictions.begin(), predictions.end(), is_within);
   return hides_an_object || segment.new_echoes >= config_.min_echoes;
 }

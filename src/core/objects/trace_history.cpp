@@ -5,6 +5,14 @@
 
 namespace donex {
 
+void Trace::move(const Eigen::Isometry3d& by) {
+  const Eigen::Vector3d shift = by * center() - center();
+  low += shift;
+  high += shift;
+  seen_from = by * seen_from;
+  for (std::size_t i = 0; i < count; ++i) points[i] = by * points[i];
+}
+
 void TraceHistory::begin(double stamp) {
   const auto first = std::find_if(sheets_.begin(), sheets_.end(),
                                   [&](const Sheet& sheet) { return sheet.stamp > stamp - look_back_; });
@@ -32,8 +40,10 @@ void TraceHistory::forget(double until) {
 TraceHistory::Id TraceHistory::leave(const JudgedScan& scan, const Segment& segment, Id before) {
   Sheet& sheet = sheets_.back();
   const auto first = static_cast<std::uint32_t>(sheet.points.size());
-  visitSome(scan, segment, kPoints, [&](const Eigen::Vector3d& point) { sheet.points.push_back(point); });
-  sheet.entries.push_back({segment.center(), first, static_cast<std::uint32_t>(sheet.points.size()) - first, before});
+  sheet.seen_from = scan.odom_from_points * scan.sensor.cast<double>();
+  visitSome(scan, segment, Trace::kMostPoints, [&](const Eigen::Vector3d& point) { sheet.points.push_back(point); });
+  const auto points = static_cast<std::uint32_t>(sheet.points.size()) - first;
+  sheet.entries.push_back({segment.low, segment.high, first, points, before});
   return {oldest_ + static_cast<std::uint32_t>(sheets_.size()) - 1,
           static_cast<std::uint32_t>(sheet.entries.size()) - 1};
 }
@@ -43,7 +53,12 @@ bool TraceHistory::find(Id latest, double stamp, Trace& trace) const {
     const Sheet& sheet = sheets_[id.sheet - oldest_];
     const Entry& entry = sheet.entries[id.entry];
     if (sheet.stamp <= stamp) {
-      trace = {sheet.stamp, entry.center, sheet.points.data() + entry.first, entry.points};
+      trace.stamp = sheet.stamp;
+      trace.low = entry.low;
+      trace.high = entry.high;
+      trace.seen_from = sheet.seen_from;
+      trace.count = entry.points;
+      std::copy_n(sheet.points.data() + entry.first, entry.points, trace.points.data());
       return true;
     }
     id = entry.before;

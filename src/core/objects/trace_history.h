@@ -1,25 +1,34 @@
 // Where the objects of the last scans were.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "core/objects/segment.h"
 
 namespace donex {
 
-/// Where some of an object's echoes were, odometry frame [m]; a view of the history.
+/// Where an object was in an earlier scan, odometry frame [m].
 struct Trace {
-  double stamp = 0.0;                                ///< [s]
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< of the object
-  const Eigen::Vector3d* first = nullptr;
-  std::size_t points = 0;
+  /// Echoes of an object that are kept, at most.
+  static constexpr std::size_t kMostPoints = 48;
 
-  std::size_t size() const { return points; }
-  const Eigen::Vector3d* begin() const { return first; }
-  const Eigen::Vector3d* end() const { return first + points; }
+  double stamp = 0.0;                                                             ///< [s]
+  Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();  ///< of its box
+  Eigen::Vector3d seen_from = Eigen::Vector3d::Zero();                            ///< where the sensor was
+  std::array<Eigen::Vector3d, kMostPoints> points;                                ///< some of its echoes
+  std::size_t count = 0;
+
+  Eigen::Vector3d center() const { return 0.5 * (low + high); }
+  std::size_t size() const { return count; }
+  const Eigen::Vector3d* begin() const { return points.data(); }
+  const Eigen::Vector3d* end() const { return points.data() + count; }
+
+  /// Moves all of it; the box as its centre moves.
+  void move(const Eigen::Isometry3d& by);
 };
 
 /// Calls visit(echo in the odometry frame [m]) for `at_most` of the segment's echoes, spread over all of them.
@@ -35,9 +44,6 @@ void visitSome(const JudgedScan& scan, const Segment& segment, std::size_t at_mo
 /// together.
 class TraceHistory {
  public:
-  /// Echoes of an object that are kept, at most.
-  static constexpr std::size_t kPoints = 48;
-
   struct Id {
     std::uint32_t sheet = 0;  ///< number of the scan, from 1; 0: no trace
     std::uint32_t entry = 0;
@@ -53,8 +59,7 @@ class TraceHistory {
   /// The segment's trace in the present scan; `before`: the same object's last one.
   Id leave(const JudgedScan& scan, const Segment& segment, Id before);
 
-  /// True where the object whose last trace is `latest` left one at `stamp` [s] or earlier; the last of these. Valid
-  /// until the next call of another kind.
+  /// True where the object whose last trace is `latest` left one at `stamp` [s] or earlier; the last of these.
   bool find(Id latest, double stamp, Trace& trace) const;
 
   void reset();
@@ -62,12 +67,13 @@ class TraceHistory {
 
  private:
   struct Entry {
-    Eigen::Vector3d center;
+    Eigen::Vector3d low, high;
     std::uint32_t first, points;
     Id before;
   };
   struct Sheet {
     double stamp = 0.0;
+    Eigen::Vector3d seen_from = Eigen::Vector3d::Zero();
     std::vector<Entry> entries;
     std::vector<Eigen::Vector3d> points;
   };

@@ -33,6 +33,12 @@ class ScanSight {
     return ask(point,
                [&](const SightImage& image, const Eigen::Vector3f& seen) { return image.throughGaps(seen, margin); });
   }
+  /// The same of the nearest beam, as SightImage::ofNearestBeam.
+  SightImage::Sight ofNearestBeam(const Eigen::Vector3f& point, float margin, int rows) const {
+    return ask(point, [&](const SightImage& image, const Eigen::Vector3f& seen) {
+      return image.ofNearestBeam(seen, margin, rows);
+    });
+  }
 
  private:
   friend class SightHistory;

@@ -179,6 +179,19 @@ std::size_t SightImage::coveredColumns() const {
 
 double SightImage::answerBytes() { return static_cast<double>(kPixels * sizeof(Range)); }
 
+SightImage::Sight SightImage::ofNearestBeam(const Eigen::Vector3f& point, float margin, int rows) const {
+  SightPixels::Pixel pixel = SightPixels::of(point);
+  const int row = pixel.row;
+  Sight sight = read(hit_, pixel, margin);
+  for (int away = 1; away <= rows && sight == Sight::kUnknown; ++away) {
+    for (const int beam : {row - away, row + away}) {
+      pixel.row = beam;
+      if (sight == Sight::kUnknown) sight = read(hit_, pixel, margin);
+    }
+  }
+  return sight;
+}
+
 std::size_t SightImage::memoryBytes() const { return (nearest_.capacity() + hit_.capacity()) * sizeof(Range); }
 
 }  // namespace donex

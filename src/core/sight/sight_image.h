@@ -81,6 +81,9 @@ class SightImage {
     return read(hit_, SightPixels::of(point), margin);
   }
 
+  /// The same of the beam closest above or below, up to `rows` away: what it hits is seen to go on between beams.
+  Sight ofNearestBeam(const Eigen::Vector3f& point, float margin, int rows) const;
+
   std::size_t memoryBytes() const;
   /// What an image's answers take, whatever the sensor covers [bytes]: it is reserved, and only what it covers is used.
   static double answerBytes();

@@ -64,7 +64,7 @@ TEST(MotionTests, ATraceIsSpreadOverTheObject) {
   const Trace trace = left;
   EXPECT_LE(trace.size(), 48U);
   EXPECT_GT(trace.size(), 24U);
-  EXPECT_NEAR(trace.center.y(), -0.75, 1e-4);
+  EXPECT_NEAR(trace.center().y(), -0.75, 1e-4);
   for (const Eigen::Vector3d& point : trace) EXPECT_NEAR(point.x(), 8.0, 1e-4);
 }
 

@@ -57,7 +57,7 @@ TEST(TraceHistory, FindsWhatListsFind) {
         if (expected == nullptr) continue;
         ++found;
         EXPECT_EQ(trace.stamp, expected->first);
-        EXPECT_NEAR(trace.center.x(), expected->second, 1e-4);
+        EXPECT_NEAR(trace.center().x(), expected->second, 1e-4);
         ASSERT_EQ(trace.size(), 1U);
         EXPECT_NEAR(trace.begin()->x(), expected->second, 1e-4);
       }
@@ -91,8 +91,8 @@ TEST(TraceHistory, KeepsNoMoreThanItIsAskedFor) {
   Trace trace;
   EXPECT_FALSE(history.find(last, 90.0, trace)) << "long forgotten";
   ASSERT_TRUE(history.find(last, 99.0, trace));
-  EXPECT_LE(trace.size(), TraceHistory::kPoints);
-  EXPECT_GT(trace.size(), TraceHistory::kPoints / 2);
+  EXPECT_LE(trace.size(), Trace::kMostPoints);
+  EXPECT_GT(trace.size(), Trace::kMostPoints / 2);
   history.reset();
   EXPECT_FALSE(history.find(last, 99.9, trace));
 }
