@@ -21,6 +21,7 @@ void LooseEchoes::loosen(TurnPart part, double stamp, const SightPixels& seen, s
   if (part != TurnPart::kContinuing) beginTurn(stamp);
   if (!looks_) return;
   sort(seen);
+  judgeAir();
   const bool was_clear = isAirClear();
   for (std::size_t i = 0; i < roles.size(); i += was_clear ? options_.sample : 1) {
     if (roles[i] != ClusterRole::kConnects || seen.row(i) < 0) continue;
@@ -29,14 +30,10 @@ void LooseEchoes::loosen(TurnPart part, double stamp, const SightPixels& seen, s
     const bool is_loose = !was_clear && count.neighbours > 0 && count.alike < options_.share * count.neighbours;
     if (is_loose) roles[i] = ClusterRole::kLoose;
   }
+  judgeAir();
   // Where drops are everywhere, some are close by to one another, and to what is solid.
-  const bool is_plume = !was_clear && !isThick(0);
+  const bool is_plume = !was_clear && !air_[0].is_thick;
   if (is_plume) smooth(seen, roles);
-}
-
-bool LooseEchoes::isThick(std::size_t reach) const {
-  const Air& air = air_[reach];
-  return air.alone >= options_.least && air.alone > options_.thick_air[reach].share * air.echoes;
 }
 
 void LooseEchoes::learnAir(float range, bool is_alone) {
@@ -46,6 +43,37 @@ void LooseEchoes::learnAir(float range, bool is_alone) {
     ++air_[i].echoes;
     air_[i].alone += is_alone ? 1.0 : 0.0;
   }
+}
+
+void LooseEchoes::judgeAir() {
+  for (std::size_t i = 0; i < air_.size(); ++i) {
+    const double share = (air_[i].is_thick ? options_.clears : 1.0) * options_.thick_air[i].share;
+    air_[i].is_thick = air_[i].alone >= options_.least && air_[i].alone > share * air_[i].echoes;
+  }
+}
+
+bool LooseEchoes::loosenPlume(const SightPixels& seen, const std::uint32_t* echoes, std::size_t count,
+                              std::vector<ClusterRole>& roles) const {
+  if (!looks_ || isAirClear()) return false;
+  const float reach = static_cast<float>(options_.thick_air[1].range) / SightPixels::kRangeStep;
+  std::size_t far = 0, asked = 0;
+  double alike = 0.0;
+  const auto is_seen = [&](std::uint32_t echo) { return echo < seen.size() && seen.row(echo) >= 0; };
+  for (std::size_t i = 0; i < count; i += count / options_.plume_sample + 1) {
+    if (!is_seen(echoes[i])) continue;
+    const Count around = neighboursOf(seen, echoes[i]);
+    if (seen.range(echoes[i]) > reach) {
+      ++far;
+    } else if (around.neighbours > 0) {
+      ++asked;
+      alike += static_cast<double>(around.alike) / around.neighbours;
+    }
+  }
+  const bool is_plume = asked > far && alike < options_.plume_share * static_cast<double>(asked);
+  for (std::size_t i = 0; is_plume && i < count; ++i) {
+    if (is_seen(echoes[i])) roles[echoes[i]] = ClusterRole::kLoose;
+  }
+  return is_plume;
 }
 
 /// In a plume a few echoes happen to have others alike beside them, and an edge of something solid has few: what most

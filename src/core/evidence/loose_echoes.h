@@ -33,6 +33,9 @@ class LooseEchoes {
     int close_pixels = 2;          ///< and in direction [pixels]
     double loose_spreads = 0.375;  ///< of the echoes close by that are loose: with more, one that is not is loose, too
     double loose_stays = 0.5;      ///< with fewer, one that is loose is not
+    /// Of the echoes beside those of a plume that are alike: 0.05 in spray, 0.3 in dust; vehicles have 0.86 and more.
+    double plume_share = 0.4;
+    std::size_t plume_sample = 500;  ///< echoes of a thing that are asked for it
     /// Of the solid echoes close by: with more that move, a loose one is their object's.
     double moving_share = 1.0 / 3.0;
     /// Of the echoes up to a range, those beside which none is alike and all are farther, or all nearer.
@@ -43,6 +46,7 @@ class LooseEchoes {
     /// Drops and second returns are everywhere: clear air has 0.44 % at most, light rain 0.9 % at least. Plumes are
     /// beside the vehicle: clear air has 0.26 % at most there (in foliage 0.57 %), spray 0.55 % at least.
     std::array<ThickAir, 2> thick_air = {ThickAir{20.0, 0.005}, ThickAir{8.0, 0.004}};
+    double clears = 0.75;    ///< of that share: with fewer, air that was thick is clear again
     double least = 10.0;     ///< of those, before anything is said: fewer are chance
     double interval = 0.5;   ///< clear air is looked at so often [s]: rain takes longer to begin
     double memory = 1.0;     ///< what was seen of the air fades to 1/e in this time [s]: two looks at clear air
@@ -57,6 +61,11 @@ class LooseEchoes {
   void loosen(TurnPart part, double stamp, const SightPixels& seen, std::vector<ClusterRole>& roles);
   /// Hands the proof of what moves to the loose echoes close by: its edges. `seen` and `roles` as for loosen().
   void join(const SightPixels& seen, const std::vector<ClusterRole>& roles, std::vector<Proof>& proofs);
+  /// While the air is not clear: whether echoes that were connected, given by number, are a plume or a piece of one
+  /// rather than a thing; then they are loose. Most of them lie within the shorter range of the air, and few echoes
+  /// beside them are alike.
+  bool loosenPlume(const SightPixels& seen, const std::uint32_t* echoes, std::size_t count,
+                   std::vector<ClusterRole>& roles) const;
   void reset() {
     air_ = {};
     looked_ = -std::numeric_limits<double>::infinity();
@@ -84,13 +93,14 @@ class LooseEchoes {
   /// What was seen of the air up to a range, fading.
   struct Air {
     double echoes = 0.0, alone = 0.0;
+    bool is_thick = false;
   };
 
-  bool isThick(std::size_t reach) const;
-  bool isAirClear() const { return !isThick(0) && !isThick(1); }
+  bool isAirClear() const { return !air_[0].is_thick && !air_[1].is_thick; }
   void beginTurn(double stamp);
   void smooth(const SightPixels& seen, std::vector<ClusterRole>& roles);
   void learnAir(float range, bool is_alone);
+  void judgeAir();
   void sort(const SightPixels& seen);
   std::size_t pixelOf(int column, int row) const;
   /// None where there are too few.

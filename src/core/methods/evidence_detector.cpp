@@ -99,6 +99,7 @@ class EvidenceDetector : public Detector {
     if (config_.objects.enabled) {
       tracker_.predict(judged_, predictions_);
       segmenter_.segment(judged_, predictions_, segments_, workers_);
+      tellPlumes();
       parts_.relate(judged_, segments_);
       tracker_.update(judged_, segments_, predictions_, now, verdicts_, workers_);
       trimmer_.trim(judged_, segments_, verdicts_, proofs_, workers_);
@@ -264,6 +265,14 @@ class EvidenceDetector : public Detector {
         judged_.places[i] = places_.judge(in_voxels_.echoes[i], judged_.points[i], clock_, before);
       }
     });
+  }
+
+  /// Dust and spray that were connected are loose after all.
+  void tellPlumes() {
+    for (Segment& segment : segments_) {
+      segment.is_of_plume =
+          loose_echoes_.loosenPlume(sights_.newest(), segment.echoes.data(), segment.echoes.size(), judged_.roles);
+    }
   }
 
   /// Without objects every echo is judged by its place alone.

@@ -212,6 +212,7 @@ void ObjectTracker::testMotion(Track& track, const MotionTests& tests, double st
 
 /// All proofs of motion, those of the whole segment first.
 Proof ObjectTracker::proofOf(const Track& track, const MotionTests& tests, double stamp, const Segment& segment) const {
+  if (segment.is_of_plume) return Proof::kNone;
   // Signs tell what has moved within the last second; its box tells that it has stopped since.
   const bool rests = stamp - track.rest.since >= options_.rests_after;
   if (!rests && !rules_.isThin(segment, sensor_) && !tests.hangs(segment)) {

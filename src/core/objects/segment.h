@@ -30,6 +30,7 @@ struct Segment {
   bool cut_out = false;  ///< cut from a larger cluster where a moving object was predicted
   bool is_of_two_turns =
       false;                 ///< has echoes of the turn before, where this one has not looked yet: more of it may come
+  bool is_of_plume = false;  ///< of dust or spray, not a thing
   std::uint32_t object = 0;  ///< that its echoes of earlier parts of the turn belong to; 0: none
 
   Eigen::Vector3d center() const { return 0.5 * (low + high); }
