@@ -32,7 +32,8 @@ void ApparentShift::solve() {
     scale = std::max(options_.has_stood, options_.narrowing * scale);
   }
   std::size_t standing_shifted = standing(world);
-  if (static_cast<double>(standing_shifted) <= options_.least_gain * static_cast<double>(standing_still)) {
+  const auto still = static_cast<double>(standing_still);
+  if (static_cast<double>(standing_shifted) <= still + options_.least_gain * std::sqrt(still)) {
     world.setZero();
     standing_shifted = standing_still;
   }

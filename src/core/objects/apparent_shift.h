@@ -18,7 +18,7 @@ struct ApparentShiftOptions {
   int rounds = 10;                    ///< of weighing; the last ones are as narrow as it gets
   std::size_t least_ends = 24;        ///< that must be seen in both scans, each coordinate by itself
   double least_standing = 1.0 / 3.0;  ///< share of the ends that must have stood
-  double least_gain = 1.2;            ///< a shift makes so many times more of them stand than none does
+  double least_gain = 2.0;  ///< so many times its own scatter more of them must stand with a shift than with none
 };
 
 /// Most of what a scan sees stands. So the shift that the ends of most boxes agree on, level and about the vertical, is
