@@ -110,10 +110,35 @@ void Ground::estimate(TurnPart part, const Eigen::Vector3d& origin, const Eigen:
     beginMap(part, origin, sensor);
   }
   collect(echoes, is_echo);
-  if (!findStart()) return;
-  climbAround();
-  continueOutwards(is_known_ ? sectorsHit() : kAllSectors);
+  const Sectors sectors = is_known_ ? sectorsHit() : kAllSectors;
+  float radius = options_.start_radius, best = radius, least = kNone;
+  for (int trial = 0; trial < options_.start_trials && least > options_.most_beneath; ++trial) {
+    radius = options_.start_radius * static_cast<float>(1 << trial);
+    if (!continueFrom(radius, sectors)) return;
+    const float beneath = shareBeneath();
+    if (beneath < least) least = beneath, best = radius;
+  }
+  if (radius != best) continueFrom(best, sectors);
   is_known_ = true;
+}
+
+/// From what lies within a radius around the sensor; false where nothing does.
+bool Ground::continueFrom(float radius, Sectors sectors) {
+  if (!findStart(radius)) return false;
+  climbAround();
+  continueOutwards(sectors);
+  return true;
+}
+
+/// Cells with an echo clearly beneath the ground, as a share of those on it.
+float Ground::shareBeneath() const {
+  int on = 1, beneath = 0;
+  for (std::size_t i = 0; i < ground_.size(); ++i) {
+    const float height = lowestIn(i) - ground_[i];
+    on += static_cast<int>(std::abs(height) < options_.on);
+    beneath += static_cast<int>(height < -options_.beneath);
+  }
+  return static_cast<float>(beneath) / static_cast<float>(on);
 }
 
 /// After a turn in parts the map moves by whole cells, so that what is known of a cell stays that cell's.
@@ -223,11 +248,11 @@ DONEX_WIDE_LOOPS void Ground::continueOutwards(Sectors sectors) {
   }
 }
 
-bool Ground::findStart() {
+bool Ground::findStart(float radius) {
   near_.clear();
-  const auto radius = static_cast<int>(options_.start_radius / options_.cell);
+  const auto cells = static_cast<int>(radius / options_.cell);
   for (const Cell& cell : outwards_) {
-    const bool enough = near_.size() >= options_.start_cells && cell.squaredDistance() > radius * radius;
+    const bool enough = near_.size() >= options_.start_cells && cell.squaredDistance() > cells * cells;
     if (enough) break;
     const std::size_t i = indexOf(cell.x, cell.y);
     const float lowest = lowestIn(i);

@@ -234,7 +234,8 @@ class EvidenceDetector : public Detector {
     if (judged_.has_ground) {
       ground_.heightsOf(judged_.points, first, last, judged_.heights);
       if (!lacks_ground_) return;
-      for (std::size_t i = first; i < last; ++i) judged_.heights[i] += clearance();  // nothing is on the ground
+      // Nothing is on the ground, nor beneath it.
+      for (std::size_t i = first; i < last; ++i) judged_.heights[i] = std::max(judged_.heights[i], 0.0F) + clearance();
     } else {
       // Without the step there is no ground to stand above: heights are the window's.
       for (std::size_t i = first; i < last; ++i) judged_.heights[i] = judged_.points[i].z();

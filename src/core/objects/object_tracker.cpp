@@ -201,7 +201,7 @@ void ObjectTracker::testMotion(Track& track, const MotionTests& tests, double st
     advanced |= former.left >= test_options_.least_left && segment.new_echoes >= config_.min_echoes;
     if (segment.is_of_two_turns) continue;  // its shape is of two times
     const bool has_changed = std::max(segment.new_echoes, former.left) >= test_options_.least_left;
-    const bool fit_tells = rules_.isUpright(segment) || has_changed;
+    const bool fit_tells = !rules_.isNarrow(segment) && (rules_.isUpright(segment) || has_changed);
     moved = moved || (fit_tells && tests.hasMoved(trace, segment));
   }
   track.receding.see(receded, stamp);

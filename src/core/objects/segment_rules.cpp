@@ -34,6 +34,10 @@ bool SegmentRules::isUpright(const Segment& segment) const {
   return segment.extent().z() > options_.upright_ratio * segment.extent().head<2>().maxCoeff();
 }
 
+bool SegmentRules::isNarrow(const Segment& segment) const {
+  return segment.extent().head<2>().maxCoeff() < options_.narrow;
+}
+
 bool SegmentRules::isThin(const Segment& segment, const Eigen::Vector3d& sensor) const {
   const double distance = (segment.center() - sensor).norm();
   return distance < options_.thin_reach && segment.extent().z() < options_.thin_angle * distance;

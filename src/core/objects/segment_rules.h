@@ -13,6 +13,7 @@ struct SegmentOptions {
   double low = 0.5;               ///< what is lower fits between beams [m]
   double most_coarse = 0.5;    ///< of the new echoes of something low: with more that are so it may have stood before
   double slim = 0.15;          ///< what is so slim and higher than `low` is a pole [m]
+  double narrow = 0.25;        ///< a strip of something larger, seen through a gap, may be narrower than that [m]
   double overhead = 2.0;       ///< above ground: above people's heads [m]
   double upright_ratio = 0.3;  ///< height by length: about that of a car
   double thin_angle = 0.02;    ///< seen under less, it is no higher than one or two beams of any sensor [rad]
@@ -48,6 +49,9 @@ class SegmentRules {
 
   /// Not a patch of ground or a roof, whose shape fits wherever it is shifted along itself.
   bool isUpright(const Segment& segment) const;
+
+  /// Narrower than anything that moves: its shape fits anywhere along that which it is a strip of.
+  bool isNarrow(const Segment& segment) const;
 
   /// Near, and yet hardly higher than a beam: an edge, a wire, a branch. `sensor` in the odometry frame.
   bool isThin(const Segment& segment, const Eigen::Vector3d& sensor) const;
