@@ -30,7 +30,7 @@ struct MotionTestOptions {
 
   /// What tells that an object stands elsewhere than it did.
   struct Displacement {
-    std::size_t least_echoes = 100, least_points = 10;  ///< of the object, and of its trace: it is described well
+    std::size_t least_echoes = 70, least_points = 10;  ///< of the object, and of its trace: it is described well
     double least = 0.12;                                ///< shift, where the world's is known [m]
     double least_unknown = 0.3;                         ///< and where it is not [m]
     double most = 1.5;                                  ///< farther away it is something else [m]
