@@ -25,7 +25,7 @@ class GroundMap {
       const double z = echoes[i].z();
       lowest_[*cell] = known == lowest_.end() ? z : std::min(z, known->second);
     }
-    if (!lowest_.empty()) findStart();
+    if (!lowest_.empty()) findGround();
   }
 
   /// Height above the ground [m]; infinite outside the map, or where no ground was found at all.
@@ -58,14 +58,40 @@ class GroundMap {
     return Cell{static_cast<int>(away.y()), static_cast<int>(away.x())};
   }
 
-  /// The plane of the ground around the sensor.
-  void findStart() {
+  /// The first of three circles around the sensor whose ground has hardly anything beneath it, or the one with least.
+  void findGround() {
+    int best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (const int cells : {8, 17, 35}) {  // 7, 14 and 28 m
+      if (least <= 0.1) break;
+      findStart(cells);
+      const double beneath = shareBeneath();
+      if (beneath < least) best = cells;
+      least = std::min(least, beneath);
+    }
+    findStart(best);
+  }
+
+  double shareBeneath() {
+    int on = 1, beneath = 0;
+    for (const auto& [cell, lowest] : lowest_) {
+      const double height = lowest - groundOf(cell).height;
+      on += std::abs(height) < 0.1 ? 1 : 0;
+      beneath += height < -0.3 ? 1 : 0;
+    }
+    return static_cast<double>(beneath) / on;
+  }
+
+  /// The plane of the ground around the sensor, in a circle of so many cells.
+  void findStart(int cells) {
+    ground_.clear();
+    continued_ = interrupted_ = 0;
     std::vector<std::pair<int, Cell>> by_distance;
     for (const auto& known : lowest_) by_distance.emplace_back(squaredDistance(known.first), known.first);
     std::sort(by_distance.begin(), by_distance.end());
     std::vector<Eigen::Vector3d> near;
     for (const auto& [squared, cell] : by_distance) {
-      const bool is_near = squared <= 64 || near.size() < 24;  // eight cells
+      const bool is_near = squared <= cells * cells || near.size() < 24;
       if (is_near) near.emplace_back(kCell * cell[1], kCell * cell[0], lowest_.at(cell));
     }
     std::vector<double> heights;

@@ -156,6 +156,29 @@ TEST(Ground, StrayEchoesBeneathItDoNotPullItDown) {
   EXPECT_GT(ground.rightOnBlocks(), 0.99);
 }
 
+TEST(Ground, IsFoundByASensorThatHardlyLooksDown) {
+  // It sees the ground from 15 m on; nearby there are only the upper parts of what stands there.
+  HeightWorld world;
+  for (const double x : {-6.0, -3.5, 3.0, 5.5}) {
+    for (const double y : {-5.0, -2.5, 2.5, 4.0}) world.blocks.push_back({x, x + 0.6, y, y + 0.6, 2.2});
+  }
+  const Eigen::Vector3d sensor(0.3, -0.2, kMount);
+  std::vector<Eigen::Vector3f> echoes;
+  for (const Eigen::Vector3f& echo : world.seenFrom(sensor, 1.2 * kReach)) {
+    const Eigen::Vector3f ray = echo - sensor.cast<float>();
+    if (ray.z() > -0.12F * ray.head<2>().norm()) echoes.push_back(echo);
+  }
+  Ground ground(kReach);
+  ground.estimate(sensor.cast<float>(), echoes, std::vector<std::uint8_t>(echoes.size(), 1));
+  int on_ground = 0;
+  for (const Eigen::Vector3f& echo : echoes) {
+    if (echo.z() > 0.01F || std::isinf(ground.heightOf(echo))) continue;
+    ++on_ground;
+    EXPECT_NEAR(ground.heightOf(echo), 0.0F, 0.1F) << echo.transpose();
+  }
+  EXPECT_GT(on_ground, 1000);
+}
+
 TEST(Ground, HeightIsInfiniteWhereNothingIsKnown) {
   const Ground never_asked(kReach);
   EXPECT_EQ(never_asked.heightOf({1.0F, 1.0F, 0.0F}), std::numeric_limits<float>::infinity());
