@@ -194,14 +194,14 @@ void ObjectTracker::testMotion(Track& track, const MotionTests& tests, double st
     // What was cut out where it was predicted cannot prove by its place that it went there.
     if (segment.cut_out || !traces_.find(track.trace, stamp - options_.look_back[k], trace)) continue;
     trace.move(shifts_[k].nowFromThen());
-    displaced = displaced || (!segment.is_of_two_turns && tests.isDisplaced(trace, segment, shifts_[k].isKnown()));
+    const bool has_shape = !segment.is_of_two_turns && !rules_.isNarrow(segment);  // of one time, and its own
+    displaced = displaced || (has_shape && tests.isDisplaced(trace, segment, shifts_[k].isKnown()));
     if (SegmentRules::isMostlySettled(segment)) continue;
     const FormerPlace former = tests.lookBack(trace);
     receded |= former.left >= config_.min_echoes && former.left > former.still;
     advanced |= former.left >= test_options_.least_left && segment.new_echoes >= config_.min_echoes;
-    if (segment.is_of_two_turns) continue;  // its shape is of two times
     const bool has_changed = std::max(segment.new_echoes, former.left) >= test_options_.least_left;
-    const bool fit_tells = !rules_.isNarrow(segment) && (rules_.isUpright(segment) || has_changed);
+    const bool fit_tells = has_shape && (rules_.isUpright(segment) || has_changed);
     moved = moved || (fit_tells && tests.hasMoved(trace, segment));
   }
   track.receding.see(receded, stamp);

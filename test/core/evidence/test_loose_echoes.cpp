@@ -156,11 +156,14 @@ Echoes wallBehindACloud() {
   return echoes;
 }
 
+/// Stopped on its way to the wall.
+bool isDrop(const Eigen::Vector3f& echo) { return echo.x() < 14.0F; }
+
 /// How many of the cloud's echoes, and of the wall's, are loose.
 std::array<double, 2> looseShares(const Echoes& echoes, const Loose& is_loose) {
   std::array<double, 2> all{}, loose{};
   for (std::size_t i = 0; i < echoes.size(); ++i) {
-    const std::size_t kind = echoes[i].x() < 14.0F ? 0 : 1;
+    const std::size_t kind = isDrop(echoes[i]) ? 0 : 1;
     ++all[kind];
     loose[kind] += is_loose[i];
   }
@@ -185,6 +188,49 @@ TEST(LooseEchoes, InAPlumeWhatIsCloseByTells) {
   EXPECT_GT(of_cloud, 1.0 - 0.5 * (1.0 - looseShares(echoes, looseInThickAir(echoes))[0]))
       << "half of the rest at least";
   EXPECT_LT(of_wall, 0.02);
+}
+
+TEST(LooseEchoes, WhatIsConnectedOfACloudIsAPlumeAndAWallIsNot) {
+  LooseEchoes::Options thick;
+  thick.thick_air = {LooseEchoes::Options::ThickAir{20.0, -1.0}, LooseEchoes::Options::ThickAir{20.0, -1.0}};
+  thick.least = 0.0;
+  LooseEchoes finder(thick);
+  const Echoes echoes = wallBehindACloud();
+  SightPixels seen;
+  seen.project(echoes, std::vector<std::uint8_t>(echoes.size(), 1));
+  std::vector<ClusterRole> roles(echoes.size(), ClusterRole::kConnects);
+  finder.loosen(TurnPart::kWhole, 100.0, seen, roles);
+  std::array<std::vector<std::uint32_t>, 2> things;  // the cloud, the wall
+  for (std::uint32_t i = 0; i < echoes.size(); ++i) things[isDrop(echoes[i]) ? 0 : 1].push_back(i);
+  std::fill(roles.begin(), roles.end(), ClusterRole::kConnects);
+  things[0].push_back(static_cast<std::uint32_t>(echoes.size()));  // of another cloud: says nothing here
+  roles.push_back(ClusterRole::kConnects);
+  EXPECT_TRUE(finder.loosenPlume(seen, things[0].data(), things[0].size(), roles));
+  EXPECT_FALSE(finder.loosenPlume(seen, things[1].data(), things[1].size(), roles));
+  for (std::uint32_t i = 0; i < echoes.size(); ++i) {
+    EXPECT_EQ(roles[i] == ClusterRole::kLoose, isDrop(echoes[i])) << i;
+  }
+  EXPECT_EQ(roles.back(), ClusterRole::kConnects);
+  LooseEchoes in_clear_air;
+  in_clear_air.loosen(TurnPart::kWhole, 100.0, seen, roles);
+  EXPECT_FALSE(in_clear_air.loosenPlume(seen, things[0].data(), things[0].size(), roles));
+}
+
+TEST(LooseEchoes, AirThatWasThickClearsLater) {
+  LooseEchoes::Options options;
+  options.thick_air = {LooseEchoes::Options::ThickAir{20.0, 0.025}, LooseEchoes::Options::ThickAir{8.0, 1.0}};
+  const Echoes downpour = wallWithDrops(0.08, 6, 3, 1), drizzle = wallWithDrops(0.035, 6, 3, 2);
+  const auto isLoosened = [&](Sensor& sensor) {
+    const Loose loose = sensor.looseIn(drizzle);
+    return std::count(loose.begin(), loose.end(), 1) > 0;
+  };
+  Sensor before(options), after(options);
+  before.looseIn(drizzle);
+  before.looseIn(drizzle);
+  EXPECT_FALSE(isLoosened(before)) << "by itself that is clear air";
+  after.looseIn(downpour);
+  after.looseIn(drizzle);
+  EXPECT_TRUE(isLoosened(after)) << "after a downpour it is not yet";
 }
 
 TEST(LooseEchoes, JoinWhatMovesCloseBy) {

@@ -1,4 +1,5 @@
 // Former places: what has left them, and what has moved elsewhere.
+#include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -40,6 +41,10 @@ struct Seen {
   }
   FormerPlace lookBack(const Trace& trace) const { return MotionTests(scene.judged, now(), options).lookBack(trace); }
   bool hasMoved(const Trace& trace) const { return MotionTests(scene.judged, now(), options).hasMoved(trace, segment); }
+
+  bool isDisplaced(const Trace& trace, bool world_is_placed = true) const {
+    return MotionTests(scene.judged, now(), options).isDisplaced(trace, segment, world_is_placed);
+  }
 
   ScanSight now() const { return history.newestSeenFrom(scene.judged.odom_from_points); }
 
@@ -95,6 +100,83 @@ TEST(MotionTests, AShapeFoundElsewhereHasMoved) {
   EXPECT_TRUE(somebody(-1.2).hasMoved(trace));
   EXPECT_FALSE(somebody(-1.85).hasMoved(trace)) << "not far enough to tell";
   EXPECT_FALSE(somebody(-1.2, Place::kSettled).hasMoved(trace)) << "what is settled stood there";
+}
+
+/// The front and a side of a car that comes closer, its front at x, before a wall. All of it is settled: it creeps, and
+/// its side slides along itself.
+Seen car(double x, double sensor_x = 0.0, double length = 4.0) {
+  JudgedScene scene(0.0, sensor_x);
+  for (double turn = 0.01; turn < 1.0; turn += 0.004) {
+    const double on_front = (x - sensor_x) * std::tan(turn), on_side = sensor_x + 2.0 / std::tan(turn);
+    const bool hits_front = on_front >= 2.0 && on_front <= 3.8, hits_side = on_side >= x && on_side <= x + length;
+    if (!hits_front && !hits_side) continue;
+    const Eigen::Vector2d hit = hits_front ? Eigen::Vector2d(x, on_front) : Eigen::Vector2d(on_side, 2.0);
+    const double away = std::hypot(hit.x() - sensor_x, hit.y());
+    for (double tilt = -0.3; tilt < 0.0; tilt += 0.007) {
+      const double z = 1.8 + tilt * away;
+      if (z > 0.3 && z < 1.5) scene.echo({hit.x(), hit.y(), z}, Place::kSettled);
+    }
+  }
+  const std::size_t echoes = scene.judged.points.size();
+  scene.face({30.0, -25.0, 0.0}, {0.0, 50.0, 0.0}, 5.0, Place::kSettled, 0.1);
+  return Seen(scene, echoes);
+}
+
+TEST(MotionTests, ACarThatCreepsIsDisplaced) {
+  const Left trace = car(9.0).leave();
+  EXPECT_TRUE(car(8.8).isDisplaced(trace));
+  EXPECT_FALSE(car(8.8).hasMoved(trace)) << "it hides where it was, and its side is still there";
+  EXPECT_TRUE(car(9.3).isDisplaced(trace)) << "going away";
+  EXPECT_FALSE(car(8.95).isDisplaced(trace)) << "hardly";
+  EXPECT_FALSE(car(6.0).isDisplaced(trace)) << "too far to be the same";
+}
+
+TEST(MotionTests, WithoutKnowingTheWorldsShiftMoreIsAskedFor) {
+  const Left trace = car(9.0).leave();
+  EXPECT_FALSE(car(8.8).isDisplaced(trace, false));
+  EXPECT_TRUE(car(8.5).isDisplaced(trace, false));
+}
+
+TEST(MotionTests, WhatIsSeenFromElsewhereOrInPartIsNotDisplaced) {
+  const Left trace = car(9.0).leave();
+  EXPECT_FALSE(car(9.0, 3.0).isDisplaced(trace));
+  EXPECT_FALSE(car(9.0, 0.0, 3.0).isDisplaced(trace)) << "its end is hidden now";
+  EXPECT_FALSE(car(9.0, 0.0, 5.0).isDisplaced(trace)) << "more of it is seen";
+}
+
+/// Two sides of something 0.6 m wide, its near corner at x, 3 m to the left.
+Seen column(double x, double sensor_x) {
+  JudgedScene scene(0.0, sensor_x);
+  scene.face({x, 3.0, 0.3}, {0.6, 0.0, 0.0}, 1.5, Place::kSettled, 0.05);
+  scene.face({x, 3.0, 0.3}, {0.0, 0.6, 0.0}, 1.5, Place::kSettled, 0.05);
+  const std::size_t echoes = scene.judged.points.size();
+  scene.face({-20.0, 15.0, 0.0}, {40.0, 0.0, 0.0}, 5.0, Place::kSettled, 0.1);
+  scene.face({20.0, -15.0, 0.0}, {0.0, 30.0, 0.0}, 5.0, Place::kSettled, 0.1);
+  return Seen(scene, echoes);
+}
+
+TEST(MotionTests, WhatMayShowAnotherSideMustShiftByMore) {
+  const Left trace = column(5.0, 0.0).leave();
+  EXPECT_TRUE(column(4.75, 0.0).isDisplaced(trace));
+  Seen passed_by = column(4.75, 3.0);
+  EXPECT_FALSE(passed_by.isDisplaced(trace)) << "something round that stands might look like that";
+  passed_by.options.displacement.round = 0.0;
+  EXPECT_TRUE(passed_by.isDisplaced(trace)) << "it is only that";
+}
+
+TEST(MotionTests, APatchOfGroundIsNotDisplaced) {
+  const auto patch = [](double x) {
+    JudgedScene scene(0.0);
+    for (double along = 0.0; along < 3.0; along += 0.1) {
+      for (double across = 0.0; across < 2.0; across += 0.1) {
+        scene.echo({x + along, across, 0.3 + 0.1 * along}, Place::kUnobserved);
+      }
+    }
+    const std::size_t echoes = scene.judged.points.size();
+    scene.face({20.0, -15.0, 0.0}, {0.0, 30.0, 0.0}, 5.0, Place::kSettled, 0.1);
+    return Seen(scene, echoes);
+  };
+  EXPECT_FALSE(patch(7.6).isDisplaced(patch(8.0).leave()));
 }
 
 TEST(MotionTests, AnotherShapeIsAnotherObject) {

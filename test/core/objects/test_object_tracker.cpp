@@ -1,6 +1,7 @@
 // Objects followed over time: which of them move, and who they are.
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -20,14 +21,16 @@ class Followed {
  public:
   explicit Followed(const ObjectConfig& config = {}) : segmenter_(60.0, config), tracker(config) {}
 
-  /// Number of the scan's echoes that move. `goes_on_with`: what the first segment's echoes beside belong to.
-  std::size_t step(const JudgedScene& scene, std::uint32_t goes_on_with = 0) {
+  /// Number of the scan's echoes that move. `goes_on_with`: what the first segment's echoes beside belong to;
+  /// `is_plume`: all of them are.
+  std::size_t step(const JudgedScene& scene, std::uint32_t goes_on_with = 0, bool is_plume = false) {
     history_.arrive(scene.scan(), scene.judged.is_echo);
     history_.add(scene.scan(), scene.judged.is_echo);
     tracker.predict(scene.judged, predictions_);
     segmenter_.connect(scene.judged);
     segmenter_.segment(scene.judged, predictions_, segments);
     if (goes_on_with != 0) segments[0].object = goes_on_with;
+    for (Segment& segment : segments) segment.is_of_plume = is_plume;
     tracker.update(scene.judged, segments, predictions_, history_.newestSeenFrom(scene.judged.odom_from_points),
                    verdicts);
     std::size_t moving = 0;
@@ -185,6 +188,61 @@ TEST(ObjectTracker, WhatStandsNeverMovesHoweverTheSensorPassesIt) {
       EXPECT_EQ(followed.step(scene), 0U) << "scan " << k;
       EXPECT_TRUE(followed.tracker.objects().empty());
     }
+  }
+}
+
+/// Eight things that stand around the sensor, each with two sides, as poses that are off by (x, y) show them.
+void addSurroundings(JudgedScene& scene, double x, double y) {
+  for (const double side : {-1.0, 1.0}) {
+    for (const double along : {6.0, 12.0, 18.0, 24.0}) {
+      scene.face({along + x, side * 6.0 + y, 0.3}, {0.0, side * 1.5, 0.0}, 1.2, Place::kSettled, 0.05);
+      scene.face({along + x, side * 6.0 + y, 0.3}, {1.5, 0.0, 0.0}, 1.2, Place::kSettled, 0.05);
+    }
+  }
+}
+
+TEST(ObjectTracker, WhatCreepsIsFoundThoughAllOfItIsSettled) {
+  Followed followed;
+  for (int k = 0; k < 30; ++k) {
+    JudgedScene scene(0.1 * k);
+    addSurroundings(scene, 0.0, 0.0);
+    const std::size_t standing = scene.judged.points.size();
+    scene.face({12.0 - 0.04 * std::max(k - 10, 0), -0.9, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kSettled, 0.05);
+    const std::size_t moving = followed.step(scene);
+    const bool expected = k >= 16;  // 0.2 m closer, twice
+    EXPECT_EQ(moving, expected || (k > 13 && moving > 0) ? scene.judged.points.size() - standing : 0U) << "scan " << k;
+  }
+}
+
+TEST(ObjectTracker, PosesThatAreOffMoveNothing) {
+  Followed followed;
+  for (int k = 0; k < 30; ++k) {
+    JudgedScene scene(0.1 * k);
+    addSurroundings(scene, 0.15 * std::sin(1.7 * k), 0.2 * std::sin(2.9 * k));
+    EXPECT_EQ(followed.step(scene), 0U) << "scan " << k;
+  }
+}
+
+TEST(ObjectTracker, APlumeIsNoObject) {
+  Followed followed;
+  for (int k = 0; k < 10; ++k) {
+    JudgedScene scene(0.1 * k);
+    addVehicle(scene, 5.0 + 0.5 * k, 2.0, Place::kNew);
+    EXPECT_EQ(followed.step(scene, 0, true), 0U) << "scan " << k;
+  }
+}
+
+TEST(ObjectTracker, AStripOfAWallThatIsSeenThroughAGapProvesNothingByItsShape) {
+  for (const double width : {0.1, 0.5}) {
+    Followed followed;
+    std::size_t moving = 0;
+    for (int k = 0; k < 20; ++k) {
+      JudgedScene scene(0.1 * k);
+      scene.face({8.0, -4.0 + 0.05 * k, 0.4}, {0.0, width, 0.0}, 1.6, Place::kUnobserved, 0.05);
+      scene.face({8.42, -8.0, 0.0}, {0.0, 16.0, 0.0}, 4.0, Place::kSettled, 0.1);
+      moving += followed.step(scene);
+    }
+    EXPECT_EQ(moving > 0, width > 0.25) << width << " m";
   }
 }
 

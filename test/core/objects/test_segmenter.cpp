@@ -109,6 +109,26 @@ TEST(Segmenter, APedestrianAtAWallIsOnlyHimself) {
   EXPECT_TRUE(SegmentRules(ObjectConfig{}).isNew(segments[0]));
 }
 
+TEST(Segmenter, WhatWasSeenElsewhereIsOneThoughItsSideIsSettled) {
+  // A car that creeps: its front is new, its side settles as it slides along itself.
+  JudgedScene scene(0.0);
+  scene.face({8.0, 2.0, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kNew);
+  scene.face({8.0, 2.0, 0.3}, {4.5, 0.0, 0.0}, 1.2, Place::kSettled);
+  const std::size_t all = scene.judged.points.size();
+  Prediction car;
+  car.center = Eigen::Vector3d(10.3, 2.9, 0.9);
+  car.extent = car.full_extent = Eigen::Vector3d(4.5, 1.8, 1.2);
+  for (const bool is_displaced : {false, true}) {
+    for (const bool is_proven : {false, true}) {
+      car.is_displaced = is_displaced;
+      car.is_proven = is_proven;
+      const Segments segments = found(scene, {car});
+      ASSERT_EQ(segments.size(), 1U);
+      EXPECT_EQ(segments[0].echoes.size() == all, is_displaced);
+    }
+  }
+}
+
 TEST(Segmenter, TwoPedestriansAtAWallAreTwoWithWhatIsUnobservedOfThem) {
   JudgedScene scene(0.0);
   scene.face({10.0, -8.0, 0.3}, {0.0, 16.0, 0.0}, 2.0, Place::kSettled);
