@@ -1,7 +1,6 @@
 #include "core/objects/motion_tests.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -30,7 +29,12 @@ Eigen::Vector3d offsetToNearest(const Eigen::Vector3d& point, const Points& othe
 }  // namespace
 
 MotionTests::MotionTests(const JudgedScan& scan, const ScanSight& now, const MotionTestOptions& options)
-    : scan_(scan), options_(options), now_(now), points_from_odom_(scan.odom_from_points.inverse()) {}
+    : scan_(scan),
+      options_(options),
+      now_(now),
+      points_from_odom_(scan.odom_from_points.inverse()),
+      rows_beside_(static_cast<int>(std::ceil(0.5 * scan.beams_apart / static_cast<double>(SightPixels::kRowHeight)))) {
+}
 
 FormerPlace MotionTests::lookBack(const Trace& trace) const {
   FormerPlace former;
@@ -61,15 +65,17 @@ bool MotionTests::isDisplaced(const Trace& trace, const Segment& segment, bool w
   const double least = (world_is_placed ? rule.least : rule.least_unknown) + seemsShifted(trace, segment);
   const bool is_rigid = (low - high).norm() <= std::max(rule.ends_noise, rule.ends_differ * shift);
   if (!is_rigid || shift < rule.least || shift > rule.most) return false;
+  const Formers formers = formersOf(trace);
+  const double telling = rule.telling_share * static_cast<double>(trace.size());
+  if (static_cast<double>(formers.count - formers.on_surface) < telling) return false;
   // Where one end frays or is hidden, the other one tells how far it went.
   Fits best;
   for (const Eigen::Vector2d& by : {low, high, Eigen::Vector2d(0.5 * (low + high)), Eigen::Vector2d(low.x(), high.y()),
                                     Eigen::Vector2d(high.x(), low.y())}) {
-    const Fits fits = fitsAlone(trace, by);
+    const Fits fits = fitsAlone(formers, by);
     if (fits.there - fits.here > best.there - best.here) best = fits;
   }
-  return best.shift >= least && best.there >= rule.telling_share * static_cast<double>(trace.size()) &&
-         best.here <= rule.contrary_share * best.there;
+  return best.shift >= least && best.there >= telling && best.here <= rule.contrary_share * best.there;
 }
 
 /// What something round that stands seems to shift by as another side of it comes into view [m].
@@ -81,25 +87,36 @@ double MotionTests::seemsShifted(const Trace& trace, const Segment& segment) con
   return turn * std::min(options_.displacement.round, 0.5 * segment.extent().head<2>().maxCoeff());
 }
 
-MotionTests::Fits MotionTests::fitsAlone(const Trace& trace, const Eigen::Vector2d& shift) const {
-  const auto surface = static_cast<float>(options_.displacement.surface);
-  const double half_spacing = 0.5 * scan_.beams_apart;
-  const int rows = static_cast<int>(std::ceil(half_spacing / static_cast<double>(SightPixels::kRowHeight)));
+MotionTests::Formers MotionTests::formersOf(const Trace& trace) const {
+  Formers formers;
+  for (const Eigen::Vector3d& in_odom : trace) {
+    const Eigen::Vector3f point = (points_from_odom_ * in_odom).cast<float>();
+    const SightImage::Sight sight = sightOf(point, options_.displacement.surface);
+    if (sight == SightImage::Sight::kUnknown) continue;
+    formers.all[formers.count++] = {point, sight};
+    formers.on_surface += sight == SightImage::Sight::kSurface ? 1 : 0;
+  }
+  return formers;
+}
+
+MotionTests::Fits MotionTests::fitsAlone(const Formers& formers, const Eigen::Vector2d& shift) const {
+  const double surface = options_.displacement.surface;
+  const Eigen::Vector3f by = (points_from_odom_.linear() * Eigen::Vector3d(shift.x(), shift.y(), 0.0)).cast<float>();
   Fits fits;
   fits.shift = shift.norm();
-  for (const Eigen::Vector3d& in_odom : trace) {
-    const Eigen::Vector3d shifted(in_odom.x() + shift.x(), in_odom.y() + shift.y(), in_odom.z());
-    const Eigen::Vector3f here = (points_from_odom_ * in_odom).cast<float>();
-    const SightImage::Sight at_here = now_.ofNearestBeam(here, surface, rows);
-    const SightImage::Sight at_there = now_.ofNearestBeam((points_from_odom_ * shifted).cast<float>(), surface, rows);
-    if (at_here == SightImage::Sight::kUnknown || at_there == SightImage::Sight::kUnknown) continue;
-    const bool fits_here = at_here == SightImage::Sight::kSurface, fits_there = at_there == SightImage::Sight::kSurface;
-    // What hides the point may be the object itself, come nearer; anything else says nothing.
-    const auto come_nearer = static_cast<float>(fits.shift) + surface;
-    const bool tells = at_here != SightImage::Sight::kHidden ||
-                       now_.ofNearestBeam(here, come_nearer, rows) == SightImage::Sight::kSurface;
-    fits.there += fits_there && !fits_here && tells ? 1 : 0;
-    fits.here += fits_here && !fits_there ? 1 : 0;
+  for (std::size_t i = 0; i < formers.count; ++i) {
+    const Former& here = formers.all[i];
+    const SightImage::Sight at_there = sightOf(here.point + by, surface);
+    if (at_there == SightImage::Sight::kUnknown) continue;
+    const bool fits_there = at_there == SightImage::Sight::kSurface;
+    if (here.sight == SightImage::Sight::kSurface) {
+      fits.here += fits_there ? 0 : 1;
+    } else if (fits_there) {
+      // What hides the point may be the object itself, come nearer; anything else says nothing.
+      const bool tells = here.sight == SightImage::Sight::kFree ||
+                         sightOf(here.point, fits.shift + surface) == SightImage::Sight::kSurface;
+      fits.there += tells ? 1 : 0;
+    }
   }
   return fits;
 }

@@ -1,6 +1,8 @@
 // What the present scan says of the place where an object was (algorithm: "Proofs of motion").
 #pragma once
 
+#include <array>
+
 #include <Eigen/Geometry>
 
 #include "core/objects/segment_rules.h"
@@ -31,16 +33,16 @@ struct MotionTestOptions {
   /// What tells that an object stands elsewhere than it did.
   struct Displacement {
     std::size_t least_echoes = 70, least_points = 10;  ///< of the object, and of its trace: it is described well
-    double least = 0.12;                                ///< shift, where the world's is known [m]
-    double least_unknown = 0.3;                         ///< and where it is not [m]
-    double most = 1.5;                                  ///< farther away it is something else [m]
-    double ends_differ = 0.65;                          ///< of the shift: by how much those of its two ends may differ
-    double ends_noise = 0.15;                           ///< and by as much in any case [m]
-    double surface = 0.15;                              ///< so near to a point its surface is [m]
-    double telling_share = 0.15;                        ///< of the trace must fit only where it is now
-    double contrary_share = 0.1;                        ///< of those may fit only where it was
-    double flat = 0.15;                                 ///< height by length: what is flatter is a patch of ground
-    double round = 0.5;                                 ///< radius of what shows another side from another place [m]
+    double least = 0.12;                               ///< shift, where the world's is known [m]
+    double least_unknown = 0.3;                        ///< and where it is not [m]
+    double most = 1.5;                                 ///< farther away it is something else [m]
+    double ends_differ = 0.65;                         ///< of the shift: by how much those of its two ends may differ
+    double ends_noise = 0.15;                          ///< and by as much in any case [m]
+    double surface = 0.15;                             ///< so near to a point its surface is [m]
+    double telling_share = 0.15;                       ///< of the trace must fit only where it is now
+    double contrary_share = 0.1;                       ///< of those may fit only where it was
+    double flat = 0.15;                                ///< height by length: what is flatter is a patch of ground
+    double round = 0.5;                                ///< radius of what shows another side from another place [m]
   } displacement;
 };
 
@@ -76,17 +78,33 @@ class MotionTests {
   bool fitsElsewhere(const Trace& trace, const Segment& segment, double least_shift) const;
   double seemsShifted(const Trace& trace, const Segment& segment) const;
 
+  /// A point of a trace in the scan's points [m], and what is seen there.
+  struct Former {
+    Eigen::Vector3f point;
+    SightImage::Sight sight;
+  };
+  /// Those of which anything is known.
+  struct Formers {
+    std::array<Former, Trace::kMostPoints> all;
+    std::size_t count = 0, on_surface = 0;
+  };
+  Formers formersOf(const Trace& trace) const;
+  SightImage::Sight sightOf(const Eigen::Vector3f& point, double margin) const {
+    return now_.ofNearestBeam(point, static_cast<float>(margin), rows_beside_);
+  }
+
   /// Points of a trace, by where alone they fit what is seen now.
   struct Fits {
     double shift = 0.0;  ///< [m]
     int there = 0, here = 0;
   };
-  Fits fitsAlone(const Trace& trace, const Eigen::Vector2d& shift) const;
+  Fits fitsAlone(const Formers& formers, const Eigen::Vector2d& shift) const;
 
   const JudgedScan& scan_;
   const MotionTestOptions& options_;
   ScanSight now_;
   Eigen::Isometry3d points_from_odom_;
+  int rows_beside_;  ///< of the sight image, to the beam closest to a place
 };
 
 }  // namespace donex
