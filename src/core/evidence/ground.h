@@ -25,9 +25,9 @@ struct GroundOptions {
   float start_uncertainty = 4.0F;  ///< around the sensor, as if the ground had been seen last this far away [m]
   float start_radius = 7.0F;       ///< the cells in it tell where the ground starts [m],
   std::size_t start_cells = 24;    ///< but never fewer than these
-  int start_trials = 3;  ///< each with twice the radius: a sensor that hardly looks down sees no ground nearby
-  float beneath = 0.3F,
-        on = 0.1F;            ///< a lowest echo that far beneath speaks against the ground, one so near for it [m]
+  int start_trials = 3;       ///< each with twice the radius: a sensor that hardly looks down sees no ground nearby
+  float on = 0.1F;            ///< a lowest echo so near to the ground speaks for it [m]
+  float beneath = 0.3F;       ///< one that far beneath speaks against it [m]
   float most_beneath = 0.1F;  ///< of the cells on it; with more the ground may have started somewhere else
   std::array<float, 3> start_reach = {0.6F, 0.3F, 0.15F};  ///< off the plane so far, one fit after another [m]
   double levelling = 50.0;                                 ///< as if so much spoke for level ground [m^2]

@@ -276,9 +276,11 @@ void ObjectTracker::reset() {
 }
 
 std::size_t ObjectTracker::memoryBytes() const {
-  return tracks_.capacity() * sizeof(Followed) + pairs_.capacity() * sizeof(Pair) + traces_.memoryBytes() +
-         (track_of_.capacity() + claim_of_.capacity()) * sizeof(int) + shifts_[0].memoryBytes() +
-         shifts_[1].memoryBytes() + shifts_[2].memoryBytes() + objects_.capacity() * sizeof(Object);
+  std::size_t bytes = tracks_.capacity() * sizeof(Followed) + pairs_.capacity() * sizeof(Pair) + traces_.memoryBytes() +
+                      (track_of_.capacity() + claim_of_.capacity()) * sizeof(int) +
+                      objects_.capacity() * sizeof(Object);
+  for (const ApparentShift& shift : shifts_) bytes += shift.memoryBytes();
+  return bytes;
 }
 
 }  // namespace donex

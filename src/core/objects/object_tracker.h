@@ -131,7 +131,8 @@ class ObjectTracker {
   MotionTestOptions test_options_;
   Eigen::Vector3d sensor_ = Eigen::Vector3d::Zero();  ///< of the present scan, odometry frame [m]
   TraceHistory traces_;
-  std::array<ApparentShift, 3> shifts_;  ///< of the world, since each of the times to look back
+  /// Of the world, since each of the times to look back.
+  std::array<ApparentShift, std::tuple_size_v<decltype(TrackerOptions::look_back)>> shifts_;
   std::vector<Followed> tracks_;
   std::vector<Pair> pairs_;
   std::vector<int> claim_of_;  ///< by segment: the track that it goes on with, or -1

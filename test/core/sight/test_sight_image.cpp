@@ -238,6 +238,24 @@ TEST(SightImage, WhoHandsOnIsAskedOnButNoMoreThroughGaps) {
   EXPECT_EQ(newest.throughGaps(on_beam, 0.5F), Sight::kHidden);
 }
 
+TEST(SightImage, TheNearestBeamAnswersBetweenBeams) {
+  Echoes echoes;  // two beams, six rows apart
+  for (int column = 0; column < Sights::kColumns; ++column) {
+    echoes.push_back(Sights::pointIn({column, 150}, 0.0, 0.0, 20.0));
+    echoes.push_back(Sights::pointIn({column, 156}, 0.0, 0.0, 8.0));
+  }
+  const SightImage image = imageOf(echoes);
+  const auto at = [&](int row, int rows) {
+    return image.ofNearestBeam(Sights::pointIn({300, row}, 0.0, 0.0, 12.0), 0.5F, rows);
+  };
+  EXPECT_EQ(at(150, 0), Sight::kFree);
+  EXPECT_EQ(at(152, 3), Sight::kFree) << "the lower one is closer";
+  EXPECT_EQ(at(154, 3), Sight::kHidden) << "the upper one is";
+  EXPECT_EQ(at(152, 1), Sight::kUnknown) << "none is so close";
+  EXPECT_EQ(at(148, 3), Sight::kFree);
+  EXPECT_EQ(at(140, 3), Sight::kUnknown);
+}
+
 TEST(SightImage, WhatIsBuiltBeforeIsForgotten) {
   SightImage image = imageOf(shell(20.0));
   const Echoes nearer = shell(8.0);
