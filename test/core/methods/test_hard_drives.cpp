@@ -36,9 +36,9 @@ TEST_P(HardDrives, ASlopeSeenWithSixteenBeams) {
 }
 
 TEST_P(HardDrives, AStreetWhoseGroundWasRemoved) {
-  // 0.972 while what lay beneath the objects that stand in for the ground was dropped.
+  // 0.894 while what lay beneath the objects that stand in for the ground was dropped.
   const std::set<std::uint32_t> ground{40, 44, 48, 49, 72};
-  std::vector<TrueScan> drive = simulatedDrive("street", 64, 50);
+  std::vector<TrueScan> drive = simulatedDrive("street", 16, 50);
   for (TrueScan& scan : drive) {
     TrueScan kept = scan;
     kept.scan.echoes.clear();
@@ -50,16 +50,17 @@ TEST_P(HardDrives, AStreetWhoseGroundWasRemoved) {
     }
     scan = kept;
   }
-  EXPECT_GT(scoreOf(drive, GetParam()).recall(), 0.98);
+  EXPECT_GT(scoreOf(drive, GetParam()).recall(), 0.9);
 }
 
 TEST_P(HardDrives, PosesThatAreOffByFiveCentimetres) {
+  // 0.975 while former places were asked for where the poses had them.
   std::vector<TrueScan> drive = simulatedDrive("slope", 64, 40);
   std::mt19937 random(1);
   std::normal_distribution<double> noise(0.0, 0.05);
   for (TrueScan& scan : drive)
     scan.scan.odom_from_base.pretranslate(Eigen::Vector3d(noise(random), noise(random), 0.0));
-  EXPECT_GT(scoreOf(drive, GetParam()).precision(), 0.94);
+  EXPECT_GT(scoreOf(drive, GetParam()).precision(), 0.985);
 }
 
 TEST_P(HardDrives, SprayBehindTheWheels) {
