@@ -13,6 +13,7 @@
 #include "core/methods/detectors.h"
 #include "core/methods/evidence_explanation.h"
 #include "core/methods/stream_guard.h"
+#include "core/objects/low_parts.h"
 #include "core/objects/object_tracker.h"
 #include "core/objects/parts_beside.h"
 #include "core/objects/segmenter.h"
@@ -77,7 +78,8 @@ class EvidenceDetector : public Detector {
         segmenter_(reachOf(config.region), config.objects),
         parts_(config.objects.cell),
         tracker_(config.objects),
-        trimmer_(reachOf(config.region), config.objects) {}
+        trimmer_(reachOf(config.region), config.objects),
+        low_parts_(reachOf(config.region), config.evidence) {}
 
   void process(const Scan& scan, EchoLabels& labels) override {
     guard_.admit(scan);
@@ -103,6 +105,7 @@ class EvidenceDetector : public Detector {
       parts_.relate(judged_, segments_);
       tracker_.update(judged_, segments_, predictions_, now, verdicts_, workers_);
       trimmer_.trim(judged_, segments_, verdicts_, proofs_, workers_);
+      low_parts_.join(judged_, in_voxels_.inside, sights_.seenBefore(judged_.odom_from_points), ground_, proofs_);
       loose_echoes_.join(sights_.newest(), judged_.roles, proofs_);
       parts_.settle(sights_.newest(), segments_, verdicts_, judged_);
       proofs_.resize(judged_.points.size());
@@ -159,7 +162,8 @@ class EvidenceDetector : public Detector {
         segments_.memoryBytes() + predictions_.capacity() * sizeof(Prediction) + verdicts_.capacity() * sizeof(Verdict);
     return in_grid + judged + decided + places_.memoryBytes() + sights_.memoryBytes() + own_body_.memoryBytes() +
            second_returns_.memoryBytes() + loose_echoes_.memoryBytes() + ground_.memoryBytes() +
-           segmenter_.memoryBytes() + trimmer_.memoryBytes() + tracker_.memoryBytes() + parts_.memoryBytes();
+           segmenter_.memoryBytes() + trimmer_.memoryBytes() + low_parts_.memoryBytes() + tracker_.memoryBytes() +
+           parts_.memoryBytes();
   }
 
  private:
@@ -323,6 +327,7 @@ class EvidenceDetector : public Detector {
   PartsBeside parts_;
   ObjectTracker tracker_;
   Trimmer trimmer_;
+  LowParts low_parts_;
 
   // Of the present scan; storage is kept from scan to scan.
   GridScan in_voxels_;
@@ -358,6 +363,7 @@ double evidenceBytes(const Config& config, double echoes) {
   bytes += OwnBody::bytesFor(config.self) + LooseEchoes::bytesFor(echoes);
   bytes += Ground::bytesFor(reach, echoes);
   bytes += Segmenter::bytesFor(reach, config.objects, echoes) + Trimmer::bytesFor(reach, config.objects, echoes);
+  bytes += LowParts::bytesFor(reach);
   return bytes + kObjects * echoes;
 }
 

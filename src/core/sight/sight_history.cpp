@@ -195,7 +195,8 @@ inline void SightView::place(const Eigen::Vector3f& point, std::size_t count, Pi
   }
 }
 
-DONEX_WIDE_LOOPS SightView::Evidence SightView::ask(const Eigen::Vector3f& point, double since, int enough) const {
+DONEX_WIDE_LOOPS SightView::Evidence SightView::ask(const Eigen::Vector3f& point, double since, int enough,
+                                                    float margin) const {
   std::size_t count = 0;
   while (count < count_ && kept_[count].stamp > since) ++count;
   Pixels pixels;
@@ -203,7 +204,7 @@ DONEX_WIDE_LOOPS SightView::Evidence SightView::ask(const Eigen::Vector3f& point
   Evidence evidence;
   for (std::size_t i = 0; i < count && evidence.free < enough; ++i) {
     const SightPixels::Pixel pixel{pixels.valid[i] != 0, pixels.column[i], pixels.row[i], pixels.range[i]};
-    const SightImage::Sight sight = kept_[i].image->atPixel(pixel, margin_);
+    const SightImage::Sight sight = kept_[i].image->atPixel(pixel, margin);
     // Counted without a branch: neighbouring scans differ in what they say.
     const int is_surface = sight == SightImage::Sight::kSurface ? 1 : 0;
     evidence.stale_surface += evidence.free > 0 ? is_surface : 0;

@@ -83,7 +83,11 @@ class SightView {
   };
 
   /// What the scans later than `since` [s] saw at `point`; stops early once `enough` of them saw it free.
-  Evidence ask(const Eigen::Vector3f& point, double since, int enough) const;
+  Evidence ask(const Eigen::Vector3f& point, double since, int enough) const {
+    return ask(point, since, enough, margin_);
+  }
+  /// The same within another margin [m].
+  Evidence ask(const Eigen::Vector3f& point, double since, int enough, float margin) const;
 
  private:
   friend class SightHistory;
