@@ -222,8 +222,10 @@ Proof ObjectTracker::proofOf(const Track& track, const MotionTests& tests, doubl
     if (rules_.isNew(segment) && !rules_.isPole(segment) && !rules_.isNewOverhead(segment, sensor_))
       return Proof::kEnteredFree;
   }
-  const bool just_stopped =
-      track.dynamic && !SegmentRules::isMostlySettled(segment) && stamp - track.last_motion <= config_.stop_time;
+  // What was proven by its new echoes alone, and has none any more, is what they uncovered: a car behind its open door.
+  const bool is_it_still = segment.new_echoes > 0 || stamp - track.last_moved_whole <= options_.moves_on;
+  const bool just_stopped = track.dynamic && is_it_still && !SegmentRules::isMostlySettled(segment) &&
+                            stamp - track.last_motion <= config_.stop_time;
   return just_stopped ? Proof::kMovedBefore : Proof::kNone;
 }
 
