@@ -21,7 +21,7 @@ enum class LowPart {
   kSeenThrough,
   kStandsOut,
   kMovesAnyway,
-  kLeftOut,  ///< outside the region, or not solid
+  kLeftOut,  ///< outside the region, not solid, or loose
   kTooHigh,
   kMirrored,
   kElsewhere,  ///< outside the square, or nowhere
@@ -63,7 +63,8 @@ class LowParts {
     const Eigen::Vector3f& point = scan_.points[echo];
     if (proof != Proof::kNone) return LowPart::kMovesAnyway;
     if (!isInSquare(point)) return LowPart::kElsewhere;
-    if (inside_[echo] == 0 || scan_.is_solid[echo] == 0) return LowPart::kLeftOut;
+    const bool takes_part = inside_[echo] != 0 && scan_.is_solid[echo] != 0;
+    if (!takes_part || scan_.roles[echo] == ClusterRole::kLoose) return LowPart::kLeftOut;
     if (!(scan_.heights[echo] <= kClearance)) return LowPart::kTooHigh;
     if (!(scan_.heights[echo] > -kRoughness)) return LowPart::kMirrored;
     float moving = std::numeric_limits<float>::infinity(), standing = moving;

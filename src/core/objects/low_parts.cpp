@@ -19,13 +19,13 @@ LowParts::LowParts(double reach, const EvidenceConfig& config, const LowPartsOpt
       margin_(options.margin * static_cast<float>(config.sight_margin)),
       width_(widthOf(reach, options.close_by)),
       first_in_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(width_), kNone),
-      is_near_(first_in_.size(), 0) {}
+      nearness_(first_in_.size(), Nearness::kFar) {}
 
-int LowParts::widthOf(double reach, float cell) { return 2 * static_cast<int>(std::ceil(reach / cell)) + 3; }
+int LowParts::widthOf(double reach, float cell) { return 2 * static_cast<int>(std::ceil(reach / cell)) + 5; }
 
 int LowParts::cellAt(const Eigen::Vector2f& from_sensor) const {
   const Eigen::Array2f cell = (from_sensor.array() / options_.close_by).floor() + static_cast<float>(width_ / 2);
-  const bool is_within = (cell >= 1.0F).all() && (cell < static_cast<float>(width_ - 1)).all();
+  const bool is_within = (cell >= 2.0F).all() && (cell < static_cast<float>(width_ - 2)).all();
   return is_within ? static_cast<int>(cell.y()) * width_ + static_cast<int>(cell.x()) : kNone;
 }
 
@@ -35,18 +35,22 @@ void LowParts::join(const JudgedScan& scan, const std::vector<std::uint8_t>& ins
   list(scan, [&](std::size_t i) { return proofs[i] != Proof::kNone; });
   moving_ = listed_.size();
   if (moving_ == 0) return;
-  markMoving(1);
+  markAround(2, Nearness::kBeside);
+  markAround(1, Nearness::kNear);
   list(scan, [&](std::size_t i) { return scan.roles[i] == ClusterRole::kConnects && proofs[i] == Proof::kNone; });
   const auto is_low = [&](std::size_t i) {
-    const float height = scan.heights[i];
-    return (static_cast<int>(height <= clearance_) & static_cast<int>(height > -options_.roughness) & inside[i] &
-            scan.is_solid[i]) != 0;
+    const ClusterRole role = scan.roles[i];
+    const int connects_nothing =
+        static_cast<int>(role == ClusterRole::kNone) | static_cast<int>(role == ClusterRole::kFollows);
+    const int is_near_ground =
+        static_cast<int>(scan.heights[i] <= clearance_) & static_cast<int>(scan.heights[i] > -options_.roughness);
+    return (connects_nothing & is_near_ground & inside[i] & scan.is_solid[i]) != 0;
   };
   forEachSelection(0, scan.own(), is_low, [&](const std::uint32_t* low, std::size_t count) {
     for (std::size_t k = 0; k < count; ++k) {
       const std::uint32_t echo = low[k];
       const int cell = cellAt((scan.points[echo] - scan.sensor).head<2>());
-      const bool is_asked = cell != kNone && is_near_[static_cast<std::size_t>(cell)] != 0;
+      const bool is_asked = cell != kNone && nearness_[static_cast<std::size_t>(cell)] == Nearness::kNear;
       if (!is_asked || proofs[echo] != Proof::kNone) continue;
       const Nearest nearest = nearestTo(scan, echo, cell, proofs);
       const bool is_beside =
@@ -57,13 +61,13 @@ void LowParts::join(const JudgedScan& scan, const std::vector<std::uint8_t>& ins
   forget();
 }
 
-/// Adds to the lists of their cells: where anything is marked, only there.
+/// Adds to the lists of their cells: once it is known what moves, only beside that.
 template <class Condition>
 void LowParts::list(const JudgedScan& scan, Condition&& is_listed) {
   forEachSelection(0, scan.points.size(), is_listed, [&](const std::uint32_t* chosen, std::size_t count) {
     for (std::size_t k = 0; k < count; ++k) {
       const int cell = cellAt((scan.points[chosen[k]] - scan.sensor).head<2>());
-      if (cell == kNone || (moving_ > 0 && is_near_[static_cast<std::size_t>(cell)] == 0)) continue;
+      if (cell == kNone || (moving_ > 0 && nearness_[static_cast<std::size_t>(cell)] == Nearness::kFar)) continue;
       int& first = first_in_[static_cast<std::size_t>(cell)];
       listed_.push_back({chosen[k], cell, first});
       first = static_cast<int>(listed_.size()) - 1;
@@ -71,14 +75,16 @@ void LowParts::list(const JudgedScan& scan, Condition&& is_listed) {
   });
 }
 
-void LowParts::markMoving(std::uint8_t is_near) {
+void LowParts::markAround(int reach, Nearness nearness) {
   for (std::size_t k = 0; k < moving_; ++k) {
-    for (const int row : {-width_, 0, width_}) std::fill_n(is_near_.data() + listed_[k].cell + row - 1, 3, is_near);
+    for (int row = -reach; row <= reach; ++row) {
+      std::fill_n(nearness_.data() + listed_[k].cell + row * width_ - reach, 2 * reach + 1, nearness);
+    }
   }
 }
 
 void LowParts::forget() {
-  markMoving(0);
+  markAround(2, Nearness::kFar);
   for (const Listed& listed : listed_) first_in_[static_cast<std::size_t>(listed.cell)] = kNone;
   listed_.clear();
   moving_ = 0;
@@ -130,7 +136,7 @@ float LowParts::heightBeside(const JudgedScan& scan, std::uint32_t echo, const E
     at.head<2>() += across;
     const int cell = cellAt((at - scan.sensor).head<2>());
     if (cell == kNone) break;
-    if (is_near_[static_cast<std::size_t>(cell)] != 0) continue;
+    if (nearness_[static_cast<std::size_t>(cell)] == Nearness::kNear) continue;
     at.head<2>() += across;  // cells of the ground are larger: that there may have been lifted, too
     return ground.heightOf(at);
   }
@@ -138,11 +144,11 @@ float LowParts::heightBeside(const JudgedScan& scan, std::uint32_t echo, const E
 }
 
 double LowParts::bytesFor(double reach, const LowPartsOptions& options) {
-  return std::pow(widthOf(reach, options.close_by), 2) * (sizeof(int) + sizeof(std::uint8_t));
+  return std::pow(widthOf(reach, options.close_by), 2) * (sizeof(int) + sizeof(Nearness));
 }
 
 std::size_t LowParts::memoryBytes() const {
-  return listed_.capacity() * sizeof(Listed) + first_in_.capacity() * sizeof(int) + is_near_.capacity();
+  return listed_.capacity() * sizeof(Listed) + first_in_.capacity() * sizeof(int) + nearness_.capacity();
 }
 
 }  // namespace donex

@@ -42,6 +42,12 @@ class LowParts {
 
  private:
   static constexpr int kNone = -1;
+  /// How far a cell is from what moves.
+  enum class Nearness : std::uint8_t {
+    kFar,
+    kBeside,  ///< two cells away: what stands there may be nearer to an echo in a cell that is near
+    kNear,    ///< it moves there, or one cell away
+  };
 
   /// An echo of an object, in a list of those of its cell.
   struct Listed {
@@ -56,11 +62,12 @@ class LowParts {
   };
 
   static int widthOf(double reach, float cell);
-  /// kNone outside the square, and at its rim.
+  /// kNone outside the square, and at its rim of two cells.
   int cellAt(const Eigen::Vector2f& from_sensor) const;
   template <class Condition>
   void list(const JudgedScan& scan, Condition&& is_listed);
-  void markMoving(std::uint8_t is_near);
+  /// Marks the cells around all that moves, up to so many away.
+  void markAround(int reach, Nearness nearness);
   void forget();
   Nearest nearestTo(const JudgedScan& scan, std::uint32_t echo, int cell, const std::vector<Proof>& proofs) const;
   bool isLowPart(const JudgedScan& scan, std::uint32_t echo, float squared_distance, const SightView& before,
@@ -72,13 +79,13 @@ class LowParts {
                      const Ground& ground) const;
 
   LowPartsOptions options_;
-  float clearance_;                    ///< [m]
-  float margin_;                       ///< [m]
-  int width_;                          ///< cells along an edge, each as long as `close_by`
-  std::vector<Listed> listed_;         ///< all that moves, then what stands near it
-  std::size_t moving_ = 0;             ///< how many of these move
-  std::vector<int> first_in_;          ///< by cell: of listed_, or kNone
-  std::vector<std::uint8_t> is_near_;  ///< by cell: whether anything moves in it or beside it
+  float clearance_;                 ///< [m]
+  float margin_;                    ///< [m]
+  int width_;                       ///< cells along an edge, each as long as `close_by`
+  std::vector<Listed> listed_;      ///< all that moves, then what stands near it
+  std::size_t moving_ = 0;          ///< how many of these move
+  std::vector<int> first_in_;       ///< by cell: of listed_, or kNone
+  std::vector<Nearness> nearness_;  ///< by cell
 };
 
 }  // namespace donex
