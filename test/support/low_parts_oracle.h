@@ -1,4 +1,4 @@
-// Low parts as low_parts.h words them: each low echo against every other one, without lists.
+// Low parts as low_parts.h and near_what_moves.h word them: each low echo against all that may be nearest to it.
 #pragma once
 
 #include <algorithm>
@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <set>
 #include <vector>
 
@@ -49,6 +50,8 @@ class LowParts {
         ground_(ground),
         proofs_(proofs) {
     for (std::size_t i = 0; i < scan.points.size(); ++i) {
+      if (moves(i)) take(i, lowest_moving_);
+      if (stands(i)) take(i, lowest_standing_);
       if (!moves(i)) continue;
       const Cell cell = cellOf(scan.points[i]);
       for (const int x : {-1, 0, 1}) {
@@ -69,11 +72,11 @@ class LowParts {
     if (!(scan_.heights[echo] > -kRoughness)) return LowPart::kMirrored;
     float moving = std::numeric_limits<float>::infinity(), standing = moving;
     Proof nearest = Proof::kNone;
-    for (std::size_t i = 0; i < scan_.points.size(); ++i) {
-      const float away = (scan_.points[i] - point).head<2>().norm();
-      if (moves(i) && away < moving) moving = away, nearest = proofs_[i];
-      if (stands(i)) standing = std::min(standing, away);
+    const auto away = [&](std::size_t i) { return (scan_.points[i] - point).head<2>().norm(); };
+    for (const auto& [part, i] : lowest_moving_) {
+      if (away(i) < moving) moving = away(i), nearest = proofs_[i];
     }
+    for (const auto& [part, i] : lowest_standing_) standing = std::min(standing, away(i));
     if (!(moving <= kCloseBy)) return LowPart::kFarAway;
     if (!(moving < standing)) return LowPart::kNearerToWhatStands;
     const LowPart reason = judge(point, moving);
@@ -84,9 +87,14 @@ class LowParts {
  private:
   using Cell = std::array<int, 2>;
 
-  Cell cellOf(const Eigen::Vector3f& point) const {
-    const Eigen::Vector3f away = (point - scan_.sensor) / kCloseBy;
+  Cell cellOf(const Eigen::Vector3f& point, int parts = 1) const {
+    const Eigen::Vector3f away = (point - scan_.sensor) / kCloseBy * static_cast<float>(parts);
     return {static_cast<int>(std::floor(away.x())), static_cast<int>(std::floor(away.y()))};
+  }
+  /// The lowest echo of each part of a cell, the quarter of an edge.
+  void take(std::size_t echo, std::map<Cell, std::size_t>& lowest) const {
+    const auto [known, is_first] = lowest.emplace(cellOf(scan_.points[echo], 4), echo);
+    if (!is_first && scan_.heights[echo] < scan_.heights[known->second]) known->second = echo;
   }
   bool isInSquare(const Eigen::Vector3f& point) const {
     if (!point.allFinite()) return false;
@@ -129,6 +137,7 @@ class LowParts {
   const Ground& ground_;
   const std::vector<Proof>& proofs_;
   std::set<Cell> near_what_moves_;
+  std::map<Cell, std::size_t> lowest_moving_, lowest_standing_;
 };
 
 }  // namespace donex::oracle

@@ -105,7 +105,9 @@ class EvidenceDetector : public Detector {
       parts_.relate(judged_, segments_);
       tracker_.update(judged_, segments_, predictions_, now, verdicts_, workers_);
       trimmer_.trim(judged_, segments_, verdicts_, proofs_, workers_);
-      low_parts_.join(judged_, in_voxels_.inside, sights_.seenBefore(judged_.odom_from_points), ground_, proofs_);
+      low_parts_.join(judged_, in_voxels_.inside, sights_.seenBefore(judged_.odom_from_points), ground_, verdicts_,
+                      segments_, proofs_);
+      tracker_.describe(judged_, segments_);
       loose_echoes_.join(sights_.newest(), judged_.roles, proofs_);
       parts_.settle(sights_.newest(), segments_, verdicts_, judged_);
       proofs_.resize(judged_.points.size());
@@ -363,7 +365,7 @@ double evidenceBytes(const Config& config, double echoes) {
   bytes += OwnBody::bytesFor(config.self) + LooseEchoes::bytesFor(echoes);
   bytes += Ground::bytesFor(reach, echoes);
   bytes += Segmenter::bytesFor(reach, config.objects, echoes) + Trimmer::bytesFor(reach, config.objects, echoes);
-  bytes += LowParts::bytesFor(reach);
+  bytes += LowParts::bytesFor(reach, echoes);
   return bytes + kObjects * echoes;
 }
 

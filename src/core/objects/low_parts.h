@@ -7,9 +7,9 @@
 
 #include "core/evidence/ground.h"
 #include "core/evidence/judged_scan.h"
+#include "core/objects/near_what_moves.h"
 #include "core/sight/sight_history.h"
 #include "donex/config.h"
-#include "donex/proof.h"
 
 namespace donex {
 
@@ -31,45 +31,19 @@ class LowParts {
   /// A square of `reach` [m] around the sensor.
   LowParts(double reach, const EvidenceConfig& config, const LowPartsOptions& options = {});
 
-  /// Hands the proof of what moves to its low parts. `inside`: one entry per echo of the cloud, whether it is in the
-  /// region; `proofs`: one per entry of the scan. `before` and `ground` are asked in the scan's points.
+  /// Adds their low parts to the segments that move, and hands them the proof. `inside`: one entry per echo of the
+  /// cloud, whether it is in the region; `proofs`: one per entry of the scan. `before` and `ground` are asked in its
+  /// points.
   void join(const JudgedScan& scan, const std::vector<std::uint8_t>& inside, const SightView& before,
-            const Ground& ground, std::vector<Proof>& proofs);
+            const Ground& ground, const Verdicts& verdicts, Segments& segments, std::vector<Proof>& proofs);
 
-  std::size_t memoryBytes() const;
-  /// What memoryBytes will be [bytes], about.
-  static double bytesFor(double reach, const LowPartsOptions& options = {});
+  std::size_t memoryBytes() const { return near_.memoryBytes(); }
+  /// What memoryBytes will be, for scans of so many echoes [bytes], about.
+  static double bytesFor(double reach, double echoes, const LowPartsOptions& options = {}) {
+    return NearWhatMoves::bytesFor(reach, options.close_by, echoes);
+  }
 
  private:
-  static constexpr int kNone = -1;
-  /// How far a cell is from what moves.
-  enum class Nearness : std::uint8_t {
-    kFar,
-    kBeside,  ///< two cells away: what stands there may be nearer to an echo in a cell that is near
-    kNear,    ///< it moves there, or one cell away
-  };
-
-  /// An echo of an object, in a list of those of its cell.
-  struct Listed {
-    std::uint32_t echo;
-    int cell;
-    int next;
-  };
-  /// Squared distances to the nearest echo that moves, and to the nearest that stands, horizontally [m^2].
-  struct Nearest {
-    float moving, standing;
-    Proof proof;  ///< of the one that moves
-  };
-
-  static int widthOf(double reach, float cell);
-  /// kNone outside the square, and at its rim of two cells.
-  int cellAt(const Eigen::Vector2f& from_sensor) const;
-  template <class Condition>
-  void list(const JudgedScan& scan, Condition&& is_listed);
-  /// Marks the cells around all that moves, up to so many away.
-  void markAround(int reach, Nearness nearness);
-  void forget();
-  Nearest nearestTo(const JudgedScan& scan, std::uint32_t echo, int cell, const std::vector<Proof>& proofs) const;
   bool isLowPart(const JudgedScan& scan, std::uint32_t echo, float squared_distance, const SightView& before,
                  const Ground& ground) const;
   bool standsOut(const JudgedScan& scan, std::uint32_t echo, const Ground& ground) const;
@@ -79,13 +53,9 @@ class LowParts {
                      const Ground& ground) const;
 
   LowPartsOptions options_;
-  float clearance_;                 ///< [m]
-  float margin_;                    ///< [m]
-  int width_;                       ///< cells along an edge, each as long as `close_by`
-  std::vector<Listed> listed_;      ///< all that moves, then what stands near it
-  std::size_t moving_ = 0;          ///< how many of these move
-  std::vector<int> first_in_;       ///< by cell: of listed_, or kNone
-  std::vector<Nearness> nearness_;  ///< by cell
+  float clearance_;  ///< [m]
+  float margin_;     ///< [m]
+  NearWhatMoves near_;
 };
 
 }  // namespace donex

@@ -27,6 +27,7 @@ void ObjectTracker::predict(const JudgedScan& scan, Predictions& predictions) co
 void ObjectTracker::update(const JudgedScan& scan, const Segments& segments, const Predictions& predictions,
                            const ScanSight& now, Verdicts& verdicts, const Workers& workers) {
   objects_.clear();
+  segment_of_.clear();
   verdicts.assign(segments.size(), Verdict{});
   sensor_ = scan.odom_from_points * scan.sensor.cast<double>();
   if (!scan.continues_turn) ++turn_;
@@ -48,7 +49,7 @@ void ObjectTracker::update(const JudgedScan& scan, const Segments& segments, con
     if (rules_.isTooLong(segments[i])) continue;
     Track& track = trackOf(i);
     if (config_.motion) track.trace = traces_.leave(scan, segments[i], track.trace);
-    if (track.ever_dynamic) describe(track, verdicts[i].proof, scan, segments[i]);
+    if (track.ever_dynamic) name(i, verdicts[i].proof, scan.stamp);
   }
   complete(segments, predictions, verdicts);
   const auto is_lost = [&](const Followed& followed) {
@@ -257,21 +258,30 @@ void ObjectTracker::complete(const Segments& segments, const Predictions& predic
   }
 }
 
-void ObjectTracker::describe(const Track& track, Proof proof, const JudgedScan& scan, const Segment& segment) {
+void ObjectTracker::name(std::size_t segment_index, Proof proof, double stamp) {
+  const Track& track = trackOf(segment_index);
   Object object;
   object.id = track.id;
   object.velocity = track.velocity;
   object.dynamic = track.dynamic;
   object.proof = proof;
-  object.age = scan.stamp - track.first_seen;
-  object.echoes = static_cast<std::uint32_t>(segment.echoes.size());
-  fitBox(segment.echoes, scan.points, scan.odom_from_points, track.velocity, object);
+  object.age = stamp - track.first_seen;
   objects_.push_back(object);
+  segment_of_.push_back(segment_index);
+}
+
+void ObjectTracker::describe(const JudgedScan& scan, const Segments& segments) {
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    const Segment& segment = segments[segment_of_[i]];
+    objects_[i].echoes = static_cast<std::uint32_t>(segment.echoes.size());
+    fitBox(segment.echoes, scan.points, scan.odom_from_points, objects_[i].velocity, objects_[i]);
+  }
 }
 
 void ObjectTracker::reset() {
   tracks_.clear();
   objects_.clear();
+  segment_of_.clear();
   traces_.reset();
   next_id_ = 1;
   turn_ = 0;
@@ -280,7 +290,7 @@ void ObjectTracker::reset() {
 std::size_t ObjectTracker::memoryBytes() const {
   std::size_t bytes = tracks_.capacity() * sizeof(Followed) + pairs_.capacity() * sizeof(Pair) + traces_.memoryBytes() +
                       (track_of_.capacity() + claim_of_.capacity()) * sizeof(int) +
-                      objects_.capacity() * sizeof(Object);
+                      objects_.capacity() * sizeof(Object) + segment_of_.capacity() * sizeof(std::size_t);
   for (const ApparentShift& shift : shifts_) bytes += shift.memoryBytes();
   return bytes;
 }

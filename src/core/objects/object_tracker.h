@@ -51,6 +51,9 @@ class ObjectTracker {
   void update(const JudgedScan& scan, const Segments& segments, const Predictions& predictions, const ScanSight& now,
               Verdicts& verdicts, const Workers& workers = Workers::alone());
 
+  /// Describes the objects by the segments of the last update, which have their low parts by now.
+  void describe(const JudgedScan& scan, const Segments& segments);
+
   /// Objects of the last scan that move, or moved since they are followed.
   const std::vector<Object>& objects() const { return objects_; }
 
@@ -123,7 +126,7 @@ class ObjectTracker {
   Proof proofOf(const Track& track, const MotionTests& tests, double stamp, const Segment& segment) const;
   Verdict decide(Track& track, const MotionTests& tests, double stamp, const Segment& segment) const;
   void complete(const Segments& segments, const Predictions& predictions, Verdicts& verdicts) const;
-  void describe(const Track& track, Proof proof, const JudgedScan& scan, const Segment& segment);
+  void name(std::size_t segment_index, Proof proof, double stamp);
 
   ObjectConfig config_;
   TrackerOptions options_;
@@ -138,6 +141,7 @@ class ObjectTracker {
   std::vector<int> claim_of_;  ///< by segment: the track that it goes on with, or -1
   std::vector<int> track_of_;  ///< by segment, -1 where it has none yet
   std::vector<Object> objects_;
+  std::vector<std::size_t> segment_of_;  ///< by object
   std::uint32_t next_id_ = 1;
   std::uint32_t turn_ = 0;
 };

@@ -12,7 +12,8 @@
 
 namespace donex {
 
-/// Connected echoes of the present scan, and what their places say. Only the segmenter writes it.
+/// Connected echoes of the present scan, and what their places say. Only the segmenter writes it; low parts come last,
+/// and count in nothing but its echoes.
 struct Segment {
   explicit Segment(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) : echoes(memory) {}
   /// Moved, never copied: with Eigen 3.3 a vector would copy its segments as it grows, out of the scan's memory.

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <numeric>
 #include <utility>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "core/objects/low_parts.h"
 
@@ -82,11 +85,21 @@ class LowScene {
     }
   }
 
-  /// Proofs after the step, over the bare ground where none was found yet.
+  /// Proofs after the step, over the bare ground where none was found yet. What moves by one proof is one segment; its
+  /// low parts are added to its echoes.
   std::vector<Proof> joinedBy(LowParts& parts) {
     if (judged.heights.size() != judged.points.size()) findGround();
     std::vector<Proof> joined = proofs;
-    parts.join(judged, inside, before(), ground, joined);
+    makeSegments();
+    const std::size_t known = echoesOfSegments();
+    parts.join(judged, inside, before(), ground, verdicts_, segments_, joined);
+    const auto moves = [](Proof proof) { return proof != Proof::kNone; };
+    const auto added =
+        std::count_if(joined.begin(), joined.end(), moves) - std::count_if(proofs.begin(), proofs.end(), moves);
+    EXPECT_EQ(echoesOfSegments(), known + static_cast<std::size_t>(added));
+    for (std::size_t i = 0; i < segments_.size(); ++i) {
+      for (const std::uint32_t echo : segments_[i].echoes) EXPECT_EQ(joined[echo], verdicts_[i].proof);
+    }
     return joined;
   }
   std::vector<Proof> joined() {
@@ -101,6 +114,21 @@ class LowScene {
   Ground ground{kReach};
 
  private:
+  void makeSegments() {
+    segments_.clear();
+    verdicts_.clear();
+    for (std::size_t proof = 1; proof < kProofs; ++proof) {
+      Segment& segment = segments_.add(0);
+      for (std::uint32_t i = 0; i < proofs.size(); ++i) {
+        if (proofs[i] == static_cast<Proof>(proof)) segment.echoes.push_back(i);
+      }
+      verdicts_.push_back({static_cast<Proof>(proof)});
+    }
+  }
+  std::size_t echoesOfSegments() const {
+    return std::accumulate(segments_.begin(), segments_.end(), std::size_t{0},
+                           [](std::size_t sum, const Segment& segment) { return sum + segment.echoes.size(); });
+  }
   bool isNearWhatMoves(const Eigen::Vector3f& echo, float distance) const {
     for (std::size_t i = 0; i < proofs.size(); ++i) {
       if (proofs[i] != Proof::kNone && (judged.points[i] - echo).head<2>().norm() < distance) return true;
@@ -109,6 +137,8 @@ class LowScene {
   }
 
   Surface surface_;
+  Segments segments_;
+  Verdicts verdicts_;
   SightHistory history_{2.0, 0.0, 0.5F, {true, 0.038}};
   double stamp_ = 0.0;
 };

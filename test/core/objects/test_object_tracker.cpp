@@ -33,6 +33,7 @@ class Followed {
     for (Segment& segment : segments) segment.is_of_plume = is_plume;
     tracker.update(scene.judged, segments, predictions_, history_.newestSeenFrom(scene.judged.odom_from_points),
                    verdicts);
+    tracker.describe(scene.judged, segments);
     std::size_t moving = 0;
     for (std::size_t i = 0; i < segments.size(); ++i) moving += verdicts[i].moves() ? segments[i].echoes.size() : 0U;
     return moving;
@@ -255,11 +256,30 @@ TEST(ObjectTracker, WhatStopsStaysDynamicForTheStopTime) {
     for (int k = 0; k < 25; ++k) {
       JudgedScene scene(0.1 * k);
       addVehicle(scene, 8.0 + 0.3 * std::min(k, 9), 2.0, k < 10 ? Place::kNew : Place::kUnobserved);
+      scene.echo({10.7, 2.0, 0.8}, Place::kNew);  // no proof by itself
       const bool expected = 0.1 * (k - 9) <= stop_time;
       EXPECT_EQ(followed.step(scene) > 0, expected) << "scan " << k << " stop_time " << stop_time;
       ASSERT_EQ(followed.tracker.objects().size(), 1U) << "it has moved since it is followed";
       EXPECT_EQ(followed.tracker.objects()[0].dynamic, expected);
     }
+  }
+}
+
+TEST(ObjectTracker, WhatHasNoNewEchoLeftHasNotJustStoppedUnlessItMovedAsAWhole) {
+  // A car behind the door that has just closed, and a vehicle that drives into what it hid itself.
+  for (const bool moves_whole : {false, true}) {
+    ObjectConfig config;
+    config.motion = moves_whole;
+    Followed followed(config);
+    std::size_t moving = 0, moving_on = 0;
+    for (int k = 0; k < 12; ++k) {
+      JudgedScene scene(0.1 * k);
+      addVehicle(scene, 8.0 + 0.5 * std::min(k, 9), 2.0, k < 10 ? Place::kNew : Place::kUnobserved);
+      scene.face({20.0, -2.0, 0.0}, {0.0, 8.0, 0.0}, 3.0, Place::kSettled, 0.1);  // seen where it has left
+      (k < 10 ? moving : moving_on) += followed.step(scene);
+    }
+    EXPECT_GT(moving, 0U);
+    EXPECT_EQ(moving_on > 0, moves_whole);
   }
 }
 
