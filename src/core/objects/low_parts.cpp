@@ -28,9 +28,9 @@ void LowParts::join(const JudgedScan& scan, const std::vector<std::uint8_t>& ins
         static_cast<int>(role == ClusterRole::kNone) | static_cast<int>(role == ClusterRole::kFollows);
     const int is_near_ground =
         static_cast<int>(scan.heights[i] <= clearance_) & static_cast<int>(scan.heights[i] > -options_.roughness);
-    const int stands = static_cast<int>(proofs[i] == Proof::kNone);
+    const int has_no_proof = static_cast<int>(proofs[i] == Proof::kNone);
     const int is_near = static_cast<int>(near_.of(i) == NearWhatMoves::Nearness::kNear);
-    return (connects_nothing & is_near_ground & stands & is_near & inside[i] & scan.is_solid[i]) != 0;
+    return (connects_nothing & is_near_ground & has_no_proof & is_near & inside[i] & scan.is_solid[i]) != 0;
   };
   forEachSelection(0, scan.own(), is_asked, [&](const std::uint32_t* low, std::size_t count) {
     for (std::size_t k = 0; k < count; ++k) {
