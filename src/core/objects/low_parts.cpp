@@ -22,15 +22,14 @@ LowParts::LowParts(double reach, const EvidenceConfig& config, const LowPartsOpt
 void LowParts::join(const JudgedScan& scan, const std::vector<std::uint8_t>& inside, const SightView& before,
                     const Ground& ground, const Verdicts& verdicts, Segments& segments, std::vector<Proof>& proofs) {
   if (!scan.has_ground || !near_.take(scan, segments, verdicts, proofs)) return;
+  const auto is_low = [&](std::size_t i) {
+    const bool connects_nothing = scan.roles[i] == ClusterRole::kNone || scan.roles[i] == ClusterRole::kFollows;
+    const bool is_near_ground = scan.heights[i] <= clearance_ && scan.heights[i] > -options_.roughness;
+    return connects_nothing && is_near_ground && inside[i] != 0 && scan.is_solid[i] != 0;
+  };
+  // Few are near, mostly one after another.
   const auto is_asked = [&](std::size_t i) {
-    const ClusterRole role = scan.roles[i];
-    const int connects_nothing =
-        static_cast<int>(role == ClusterRole::kNone) | static_cast<int>(role == ClusterRole::kFollows);
-    const int is_near_ground =
-        static_cast<int>(scan.heights[i] <= clearance_) & static_cast<int>(scan.heights[i] > -options_.roughness);
-    const int has_no_proof = static_cast<int>(proofs[i] == Proof::kNone);
-    const int is_near = static_cast<int>(near_.of(i) == NearWhatMoves::Nearness::kNear);
-    return (connects_nothing & is_near_ground & has_no_proof & is_near & inside[i] & scan.is_solid[i]) != 0;
+    return near_.of(i) == NearWhatMoves::Nearness::kNear && proofs[i] == Proof::kNone && is_low(i);
   };
   forEachSelection(0, scan.own(), is_asked, [&](const std::uint32_t* low, std::size_t count) {
     for (std::size_t k = 0; k < count; ++k) {

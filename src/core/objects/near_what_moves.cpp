@@ -89,7 +89,7 @@ void NearWhatMoves::takeMoving(const Segments& segments, const Verdicts& verdict
 
 void NearWhatMoves::takeStanding(const std::vector<Proof>& proofs) {
   const auto stands = [&](std::size_t i) {
-    return scan_->roles[i] == ClusterRole::kConnects && proofs[i] == Proof::kNone && of(i) >= Nearness::kBeside;
+    return of(i) >= Nearness::kBeside && scan_->roles[i] == ClusterRole::kConnects && proofs[i] == Proof::kNone;
   };
   forEachSelection(0, scan_->points.size(), stands, [&](const std::uint32_t* chosen, std::size_t count) {
     for (std::size_t k = 0; k < count; ++k) add(chosen[k], kStands);
