@@ -87,7 +87,9 @@ void visitEvidence(EvidenceConfig& e, Visitor& visit) {
       ParameterInfo{"neighbourhood", "", "a new voxel that touches settled ones is a surface on a voxel border", true},
       e.neighbourhood);
   visit(ParameterInfo{"ground", "", "echoes on the local ground are never dynamic", true}, e.ground);
-  visit(ParameterInfo{"ground_clearance", "m", "height above the local ground below which an echo is ground", true},
+  visit(ParameterInfo{"ground_clearance", "m",
+                      "height above the local ground below which an echo is ground, but for low parts of what moves",
+                      true},
         e.ground_clearance, 0.0, 2.0);
 }
 
