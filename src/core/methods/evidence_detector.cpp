@@ -105,6 +105,7 @@ class EvidenceDetector : public Detector {
       parts_.relate(judged_, segments_);
       tracker_.update(judged_, segments_, predictions_, now, verdicts_, workers_);
       trimmer_.trim(judged_, segments_, verdicts_, proofs_, workers_);
+      // Another view: the one from before the sights were kept is no longer valid.
       low_parts_.join(judged_, in_voxels_.inside, sights_.seenBefore(judged_.odom_from_points), ground_, verdicts_,
                       segments_, proofs_);
       tracker_.describe(judged_, segments_);

@@ -49,7 +49,7 @@ void ObjectTracker::update(const JudgedScan& scan, const Segments& segments, con
     if (rules_.isTooLong(segments[i])) continue;
     Track& track = trackOf(i);
     if (config_.motion) track.trace = traces_.leave(scan, segments[i], track.trace);
-    if (track.ever_dynamic) name(i, verdicts[i].proof, scan.stamp);
+    if (track.ever_dynamic) addObject(i, verdicts[i].proof, scan.stamp);
   }
   complete(segments, predictions, verdicts);
   const auto is_lost = [&](const Followed& followed) {
@@ -258,7 +258,7 @@ void ObjectTracker::complete(const Segments& segments, const Predictions& predic
   }
 }
 
-void ObjectTracker::name(std::size_t segment_index, Proof proof, double stamp) {
+void ObjectTracker::addObject(std::size_t segment_index, Proof proof, double stamp) {
   const Track& track = trackOf(segment_index);
   Object object;
   object.id = track.id;

@@ -46,8 +46,8 @@ class ObjectTracker {
   /// Where the moving objects should be when the scan was taken, from what was known before its turn.
   void predict(const JudgedScan& scan, Predictions& predictions) const;
 
-  /// Follows the segments of a scan and decides about each. `predictions` are those for the scan; `now`: what the scan
-  /// sees, asked in its points.
+  /// Follows the segments of a scan and decides about each; describe() follows. `predictions` are those for the scan;
+  /// `now`: what the scan sees, asked in its points.
   void update(const JudgedScan& scan, const Segments& segments, const Predictions& predictions, const ScanSight& now,
               Verdicts& verdicts, const Workers& workers = Workers::alone());
 
@@ -126,7 +126,7 @@ class ObjectTracker {
   Proof proofOf(const Track& track, const MotionTests& tests, double stamp, const Segment& segment) const;
   Verdict decide(Track& track, const MotionTests& tests, double stamp, const Segment& segment) const;
   void complete(const Segments& segments, const Predictions& predictions, Verdicts& verdicts) const;
-  void name(std::size_t segment_index, Proof proof, double stamp);
+  void addObject(std::size_t segment_index, Proof proof, double stamp);
 
   ObjectConfig config_;
   TrackerOptions options_;

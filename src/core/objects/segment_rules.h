@@ -18,7 +18,7 @@ struct SegmentOptions {
   double upright_ratio = 0.3;  ///< height by length: about that of a car
   double thin_angle = 0.02;    ///< seen under less, it is no higher than one or two beams of any sensor [rad]
   double thin_reach = 20.0;    ///< farther away beams are too sparse to tell [m]
-  double long_extent = 1.75;   ///< the width of a car, the side of which settles under it [m]
+  double long_extent = 1.75;   ///< the width of a car: seen from any side, a vehicle is longer [m]
   double followed_distance = 1.5;  ///< farther from its predicted place a followed object is not looked for [m]
   double prediction_rim = 0.2;     ///< by which a predicted object's centre may leave the segment it is within [m]
   double other_view_share = 0.5;   ///< of the extent that another view of the same object may not show
@@ -63,7 +63,7 @@ class SegmentRules {
   /// Extents [m] that may be those of one object, seen from two places.
   bool areAlike(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
 
-  /// Longer than what it moves in the birth window: its own side settles under it.
+  /// As long as a car is wide, at least: its own side settles under it as it slides along itself.
   bool isLong(const Eigen::Vector3d& extent) const;
 
   /// The segment may be the predicted object.

@@ -1,0 +1,243 @@
+// Objects followed over time: which of them move.
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "core/objects/followed.h"
+
+namespace donex {
+namespace {
+
+using testing::addVehicle;
+using testing::Followed;
+using testing::JudgedScene;
+
+TEST(ProofsOfMotion, AVehicleAheadAtTheSameSpeedIsFoundByItsRear) {
+  Followed followed;
+  for (int k = 0; k < 30; ++k) {
+    const double sensor_x = 1.2 * k;
+    JudgedScene scene(0.1 * k, sensor_x);
+    // Only ever in its own shadow: nothing of it is new.
+    scene.face({sensor_x + 12.0, -0.9, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kUnobserved, 0.05);
+    const std::size_t moving = followed.step(scene);
+    const bool found_when_it_must = k < 6 || moving == scene.judged.points.size();
+    const bool not_before_it_can = k > 3 || moving == 0;
+    EXPECT_TRUE(found_when_it_must && not_before_it_can) << "scan " << k << ": " << moving;
+  }
+  ASSERT_EQ(followed.tracker.objects().size(), 1U);
+  EXPECT_NEAR(followed.tracker.objects()[0].velocity.x(), 12.0, 0.2);
+}
+
+TEST(ProofsOfMotion, WithoutMotionOnlyNewEchoesTell) {
+  ObjectConfig config;
+  config.motion = false;
+  for (const Place place : {Place::kUnobserved, Place::kNew}) {
+    Followed followed(config);
+    for (int k = 0; k < 30; ++k) {
+      JudgedScene scene(0.1 * k, 1.2 * k);
+      scene.face({1.2 * k + 12.0, -0.9, 0.3}, {0.0, 1.8, 0.0}, 1.2, place, 0.05);
+      EXPECT_EQ(followed.step(scene), place == Place::kNew ? scene.judged.points.size() : 0U) << "scan " << k;
+    }
+  }
+}
+
+TEST(ProofsOfMotion, AFewNewEchoesAndAPlaceThatIsLeftAreEnough) {
+  // The ends of a long vehicle that passes by: little is new, the former end is seen free.
+  Followed followed;
+  std::size_t moving = 0;
+  for (int k = 0; k < 20; ++k) {
+    JudgedScene scene(0.1 * k);
+    const double x = -10.0 + 0.8 * k;
+    scene.face({x, 6.0, 0.3}, {12.0, 0.0, 0.0}, 1.2, Place::kUnobserved);
+    scene.face({-30.0, 20.0, 0.3}, {60.0, 0.0, 0.0}, 6.0, Place::kUnobserved, 0.15);  // a house behind
+    for (int i = 0; i < 6; ++i) scene.echo({x + 12.1, 6.0, 0.3 + 0.1 * i}, Place::kNew);
+    moving = followed.step(scene);
+  }
+  EXPECT_EQ(moving, 121U * 13U + 6U);
+}
+
+TEST(ProofsOfMotion, WhatStandsNeverMovesHoweverTheSensorPassesIt) {
+  for (const Place place : {Place::kUnobserved, Place::kSettled}) {
+    Followed followed;
+    for (int k = 0; k < 40; ++k) {
+      JudgedScene scene(0.1 * k, 1.0 * k);
+      addVehicle(scene, 20.0, 3.0, place);
+      scene.face({30.0, -6.0, 0.3}, {0.0, 2.0, 0.0}, 1.5, place);
+      scene.face({-20.0, 12.0, 0.0}, {100.0, 0.0, 0.0}, 6.0, place, 0.2);
+      EXPECT_EQ(followed.step(scene), 0U) << "scan " << k;
+      EXPECT_TRUE(followed.tracker.objects().empty());
+    }
+  }
+}
+
+/// Eight things that stand around the sensor, each with two sides, as poses that are off by (x, y) show them.
+void addSurroundings(JudgedScene& scene, double x, double y) {
+  for (const double side : {-1.0, 1.0}) {
+    for (const double along : {6.0, 12.0, 18.0, 24.0}) {
+      scene.face({along + x, side * 6.0 + y, 0.3}, {0.0, side * 1.5, 0.0}, 1.2, Place::kSettled, 0.05);
+      scene.face({along + x, side * 6.0 + y, 0.3}, {1.5, 0.0, 0.0}, 1.2, Place::kSettled, 0.05);
+    }
+  }
+}
+
+TEST(ProofsOfMotion, WhatCreepsIsFoundThoughAllOfItIsSettled) {
+  Followed followed;
+  for (int k = 0; k < 30; ++k) {
+    JudgedScene scene(0.1 * k);
+    addSurroundings(scene, 0.0, 0.0);
+    const std::size_t standing = scene.judged.points.size();
+    scene.face({12.0 - 0.04 * std::max(k - 10, 0), -0.9, 0.3}, {0.0, 1.8, 0.0}, 1.2, Place::kSettled, 0.05);
+    const std::size_t moving = followed.step(scene);
+    const bool expected = k >= 16;  // 0.2 m closer, twice
+    EXPECT_EQ(moving, expected || (k > 13 && moving > 0) ? scene.judged.points.size() - standing : 0U) << "scan " << k;
+  }
+}
+
+TEST(ProofsOfMotion, PosesThatAreOffMoveNothing) {
+  Followed followed;
+  for (int k = 0; k < 30; ++k) {
+    JudgedScene scene(0.1 * k);
+    addSurroundings(scene, 0.15 * std::sin(1.7 * k), 0.2 * std::sin(2.9 * k));
+    EXPECT_EQ(followed.step(scene), 0U) << "scan " << k;
+  }
+}
+
+TEST(ProofsOfMotion, APlumeIsNoObject) {
+  Followed followed;
+  for (int k = 0; k < 10; ++k) {
+    JudgedScene scene(0.1 * k);
+    addVehicle(scene, 5.0 + 0.5 * k, 2.0, Place::kNew);
+    EXPECT_EQ(followed.step(scene, 0, true), 0U) << "scan " << k;
+  }
+}
+
+TEST(ProofsOfMotion, AStripOfAWallThatIsSeenThroughAGapProvesNothingByItsShape) {
+  for (const double width : {0.1, 0.5}) {
+    Followed followed;
+    std::size_t moving = 0;
+    for (int k = 0; k < 20; ++k) {
+      JudgedScene scene(0.1 * k);
+      scene.face({8.0, -4.0 + 0.05 * k, 0.4}, {0.0, width, 0.0}, 1.6, Place::kUnobserved, 0.05);
+      scene.face({8.42, -8.0, 0.0}, {0.0, 16.0, 0.0}, 4.0, Place::kSettled, 0.1);
+      moving += followed.step(scene);
+    }
+    EXPECT_EQ(moving > 0, width > 0.25) << width << " m";
+  }
+}
+
+TEST(ProofsOfMotion, WhatStopsStaysDynamicForTheStopTime) {
+  for (const double stop_time : {0.0, 0.45, 1.05}) {
+    ObjectConfig config;
+    config.motion = false;  // its places alone tell
+    config.stop_time = stop_time;
+    Followed followed(config);
+    for (int k = 0; k < 25; ++k) {
+      JudgedScene scene(0.1 * k);
+      addVehicle(scene, 8.0 + 0.3 * std::min(k, 9), 2.0, k < 10 ? Place::kNew : Place::kUnobserved);
+      scene.echo({10.7, 2.0, 0.8}, Place::kNew);  // no proof by itself
+      const bool expected = 0.1 * (k - 9) <= stop_time;
+      EXPECT_EQ(followed.step(scene) > 0, expected) << "scan " << k << " stop_time " << stop_time;
+      ASSERT_EQ(followed.tracker.objects().size(), 1U) << "it has moved since it is followed";
+      EXPECT_EQ(followed.tracker.objects()[0].dynamic, expected);
+    }
+  }
+}
+
+TEST(ProofsOfMotion, WhatHasNoNewEchoLeftHasNotJustStoppedUnlessItMovedAsAWhole) {
+  // A car behind the door that has just closed, and a vehicle that drives into what it hid itself.
+  for (const bool moves_whole : {false, true}) {
+    ObjectConfig config;
+    config.motion = moves_whole;
+    Followed followed(config);
+    std::size_t moving = 0, moving_on = 0;
+    for (int k = 0; k < 12; ++k) {
+      JudgedScene scene(0.1 * k);
+      addVehicle(scene, 8.0 + 0.5 * std::min(k, 9), 2.0, k < 10 ? Place::kNew : Place::kUnobserved);
+      scene.face({20.0, -2.0, 0.0}, {0.0, 8.0, 0.0}, 3.0, Place::kSettled, 0.1);  // seen where it has left
+      (k < 10 ? moving : moving_on) += followed.step(scene);
+    }
+    EXPECT_GT(moving, 0U);
+    EXPECT_EQ(moving_on > 0, moves_whole);
+  }
+}
+
+TEST(ProofsOfMotion, WhatRestsHasStoppedHoweverNewItsPlaceIs) {
+  const ObjectConfig config;
+  const TrackerOptions options;
+  Followed followed(config);
+  for (int k = 0; k < 25; ++k) {
+    JudgedScene scene(0.1 * k);
+    const int braked = std::min(k, 5);
+    addVehicle(scene, 8.0 + 0.5 * braked, 2.0, Place::kNew);
+    const double resting = 0.1 * (k - 5), stops = options.rests_after + config.stop_time;
+    const std::size_t moving = followed.step(scene);
+    if (resting < stops - 0.09) {
+      EXPECT_GT(moving, 0U) << "scan " << k;
+    } else if (resting > stops + 0.01) {
+      EXPECT_EQ(moving, 0U) << "scan " << k;
+    }
+  }
+}
+
+TEST(ProofsOfMotion, AParkedCarThatDrivesOffIsFoundBeforeItIsFast) {
+  Followed followed;
+  for (int k = 0; k < 45; ++k) {
+    JudgedScene scene(0.1 * k);
+    const double driving = std::max(0.0, 0.1 * (k - 20)), way = 0.5 * 1.75 * driving * driving;
+    addVehicle(scene, 8.0 + way, 2.0, way < 0.2 ? Place::kSettled : Place::kUnobserved);
+    const std::size_t car = scene.judged.points.size();
+    scene.face({-10.0, 12.0, 0.0}, {60.0, 0.0, 0.0}, 6.0, Place::kSettled, 0.2);
+    const std::size_t moving = followed.step(scene);
+    EXPECT_TRUE(moving == 0 || moving == car) << "scan " << k << ": " << moving;
+    EXPECT_EQ(moving, driving > 1.5 ? car : driving < 0.3 ? 0U : moving) << "driving for " << driving << " s";
+  }
+}
+
+TEST(ProofsOfMotion, WhatSettlesStandsAtOnce) {
+  Followed followed;
+  for (int k = 0; k < 14; ++k) {
+    JudgedScene scene(0.1 * k);
+    addVehicle(scene, 8.0 + 0.3 * std::min(k, 9), 2.0, k < 10 ? Place::kNew : Place::kSettled);
+    EXPECT_EQ(followed.step(scene) > 0, k < 10) << "scan " << k;
+  }
+}
+
+TEST(ProofsOfMotion, WhatASlowThingLeavesBehindAFenceTells) {
+  // Careful sight knows nothing behind a fence; the object's own shape, found elsewhere, tells.
+  Followed followed;
+  std::size_t moving = 0, person = 0;
+  for (int k = 0; k < 20; ++k) {
+    JudgedScene scene(0.1 * k);
+    const double y = -3.0 + 0.12 * k;
+    scene.face({9.0, y, 0.4}, {0.0, 0.5, 0.0}, 1.4, Place::kUnobserved, 0.05);
+    person = scene.judged.points.size();
+    for (int picket = 0; picket < 40; ++picket) {
+      scene.face({6.0, -4.0 + 0.2 * picket, 0.0}, {0.0, 0.02, 0.0}, 1.1, Place::kSettled, 0.02);
+    }
+    scene.face({25.0, -15.0, 0.0}, {0.0, 30.0, 0.0}, 5.0, Place::kSettled);
+    moving = followed.step(scene);
+  }
+  EXPECT_EQ(moving, person);
+}
+
+TEST(ProofsOfMotion, AThinThingNeverMoves) {
+  Followed followed;
+  for (int k = 0; k < 10; ++k) {
+    JudgedScene scene(0.1 * k);
+    scene.face({8.0 + 0.5 * k, 2.0, 2.2}, {0.0, 1.5, 0.0}, 0.05, Place::kNew, 0.05);
+    EXPECT_EQ(followed.step(scene), 0U);
+  }
+}
+
+TEST(ProofsOfMotion, APoleThatScansMissedHasNotEntered) {
+  for (const double width : {0.1, 0.5}) {
+    Followed followed;
+    JudgedScene scene(0.0);
+    scene.face({10.0, 2.0, 0.5}, {0.0, width, 0.0}, 1.5, Place::kSurelyNew);
+    EXPECT_EQ(followed.step(scene) > 0, width > 0.3) << width;
+  }
+}
+
+}  // namespace
+}  // namespace donex
