@@ -15,7 +15,6 @@ constexpr double kEver = -std::numeric_limits<double>::infinity();
 
 LowParts::LowParts(double reach, const EvidenceConfig& config, const LowPartsOptions& options)
     : options_(options),
-      clearance_(static_cast<float>(config.ground_clearance)),
       margin_(options.margin * static_cast<float>(config.sight_margin)),
       near_(reach, options.close_by) {}
 
@@ -24,8 +23,7 @@ void LowParts::join(const JudgedScan& scan, const std::vector<std::uint8_t>& ins
   if (!scan.has_ground || !near_.take(scan, segments, verdicts, proofs)) return;
   const auto is_low = [&](std::size_t i) {
     const bool connects_nothing = scan.roles[i] == ClusterRole::kNone || scan.roles[i] == ClusterRole::kFollows;
-    const bool is_near_ground = scan.heights[i] <= clearance_ && scan.heights[i] > -options_.roughness;
-    return connects_nothing && is_near_ground && inside[i] != 0 && scan.is_solid[i] != 0;
+    return connects_nothing && scan.heights[i] > -options_.roughness && inside[i] != 0 && scan.is_solid[i] != 0;
   };
   // Few are near, mostly one after another.
   const auto is_asked = [&](std::size_t i) {

@@ -53,8 +53,7 @@ class LowParts {
                      const Ground& ground) const;
 
   LowPartsOptions options_;
-  float clearance_;  ///< [m]
-  float margin_;     ///< [m]
+  float margin_;  ///< [m]
   NearWhatMoves near_;
 };
 

@@ -150,15 +150,17 @@ TEST(ProofsOfMotion, WhatHasNoNewEchoLeftHasNotJustStoppedUnlessItMovedAsAWhole)
     ObjectConfig config;
     config.motion = moves_whole;
     Followed followed(config);
-    std::size_t moving = 0, moving_on = 0;
-    for (int k = 0; k < 12; ++k) {
+    std::size_t moving = 0;
+    for (int k = 0; k < 18; ++k) {
       JudgedScene scene(0.1 * k);
       addVehicle(scene, 8.0 + 0.5 * std::min(k, 9), 2.0, k < 10 ? Place::kNew : Place::kUnobserved);
       scene.face({20.0, -2.0, 0.0}, {0.0, 8.0, 0.0}, 3.0, Place::kSettled, 0.1);  // seen where it has left
-      (k < 10 ? moving : moving_on) += followed.step(scene);
+      moving += followed.step(scene);
+      if (k < (moves_whole ? 14 : 10)) continue;  // until then its former places, or its new echoes, tell
+      ASSERT_EQ(followed.verdicts.size(), 2U) << "the vehicle, and the wall";
+      EXPECT_EQ(followed.verdicts[0].proof, moves_whole ? Proof::kMovedBefore : Proof::kNone) << "scan " << k;
     }
     EXPECT_GT(moving, 0U);
-    EXPECT_EQ(moving_on > 0, moves_whole);
   }
 }
 
