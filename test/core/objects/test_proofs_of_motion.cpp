@@ -145,7 +145,7 @@ TEST(ProofsOfMotion, WhatStopsStaysDynamicForTheStopTime) {
 }
 
 TEST(ProofsOfMotion, WhatHasNoNewEchoLeftHasNotJustStoppedUnlessItMovedAsAWhole) {
-  // A car behind the door that has just closed, and a vehicle that drives into what it hid itself.
+  // What a door uncovered that has just closed, and a vehicle that has just stopped.
   for (const bool moves_whole : {false, true}) {
     ObjectConfig config;
     config.motion = moves_whole;
