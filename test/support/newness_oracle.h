@@ -40,7 +40,7 @@ class Newness {
   /// surfaces seen before the newest of them, and no fewer than the surfaces seen long ago. How many are needed is
   /// counted by how surely each looked there.
   struct Look {
-    bool free = false, surely = false, coarsely = false, surface = false;
+    bool free = false, surely = false, coarsely = false, overlooked = false, surface = false;
   };
   Look look(const SightView& before_scan, const Eigen::Vector3f& point, double since, bool settled) const {
     int needed = config_.free_evidence ? config_.free_scans : 1;
@@ -54,6 +54,7 @@ class Newness {
     if (seen.free <= 2 * seen.stale_surface || seen.free < seen.lasting_surface) look.free = false;
     look.surely = look.free && 2 * seen.free > seen.free + seen.stale_surface + seen.hidden;
     look.coarsely = look.free && seen.fine_free + kRounding < static_cast<float>(needed);
+    look.overlooked = look.free && seen.overlooked >= 0.5;
     look.surface = !look.free && seen.lasting_surface > 0;
     return look;
   }
@@ -64,10 +65,9 @@ class Newness {
     return look(before_scan, point, kBeforeEverything, false);
   }
 
-  static Place placeOf(bool surely, bool coarsely) {
-    if (surely && coarsely) return Place::kSurelyCoarselyNew;
-    if (coarsely) return Place::kCoarselyNew;
-    return surely ? Place::kSurelyNew : Place::kNew;
+  static Place placeOf(bool surely, bool coarsely, bool lingers) {
+    return static_cast<Place>(static_cast<unsigned>(Place::kNew) + (surely ? 1U : 0U) + (coarsely ? 2U : 0U) +
+                              (lingers ? 4U : 0U));
   }
 
   EvidenceConfig config_;
@@ -104,18 +104,18 @@ class Newness3d : public Newness {
     if (!isYoung(state.birth, state.was_free)) return Place::kSettled;
     if (state.at_surface) return Place::kAtSurface;
     if (!state.was_free) return Place::kUnobserved;
-    return placeOf(state.surely, state.coarsely);
+    return placeOf(state.surely, state.coarsely, state.overlooked || !isYoung(state.birth, false));
   }
 
  private:
   struct State {
     int birth = kNever, last_hit = kNever;
-    bool was_free = false, surely = false, coarsely = false, at_surface = false;
+    bool was_free = false, surely = false, coarsely = false, overlooked = false, at_surface = false;
   };
 
   State born(const Voxel& voxel, const Look& seen) const {
     const bool touches = seen.free && config_.neighbourhood && touchesSettled(voxel);
-    return {now(), now(), seen.free, seen.surely, seen.coarsely, touches || seen.surface};
+    return {now(), now(), seen.free, seen.surely, seen.coarsely, seen.overlooked, touches || seen.surface};
   }
 
   /// A surface that was hit lately.
@@ -169,6 +169,7 @@ class Newness2d : public Newness {
     range.extend(height);
     if (comes && seen.surely) cell.sure.push_back(height);
     if (comes && seen.coarsely) cell.coarse.push_back(height);
+    if (comes && seen.overlooked) cell.overlooked.push_back(height);
     if (touches || seen.surface) cell.surfaces.push_back(height);
     return comes ? arrivedPlace(cell, height) : foundPlace(cell, height);
   }
@@ -177,9 +178,10 @@ class Newness2d : public Newness {
   using Position = std::array<int, 2>;
   struct Cell {
     HeightRange settled, arrived, found;
-    std::vector<float> surfaces;  ///< heights in `found` that belonged to a surface
-    std::vector<float> sure;      ///< heights in `arrived` that had surely been free
-    std::vector<float> coarse;    ///< ... that only beams far apart had seen free
+    std::vector<float> surfaces;    ///< heights in `found` that belonged to a surface
+    std::vector<float> sure;        ///< heights in `arrived` that had surely been free
+    std::vector<float> coarse;      ///< ... that only beams far apart had seen free
+    std::vector<float> overlooked;  ///< ... where nobody had looked for half a second
     int arrived_birth = kNever, found_birth = kNever;
     std::vector<int> hits;  ///< scans
   };
@@ -191,6 +193,7 @@ class Newness2d : public Newness {
       cell.arrived = HeightRange{};
       cell.sure.clear();
       cell.coarse.clear();
+      cell.overlooked.clear();
     }
     if (!cell.found.empty() && !isYoung(cell.found_birth, false)) {
       cell.settled.extend(cell.found);
@@ -204,8 +207,9 @@ class Newness2d : public Newness {
   static Place foundPlace(const Cell& cell, float height) {
     return isAmong(cell.surfaces, height) ? Place::kAtSurface : Place::kUnobserved;
   }
-  static Place arrivedPlace(const Cell& cell, float height) {
-    return placeOf(isAmong(cell.sure, height), isAmong(cell.coarse, height));
+  Place arrivedPlace(const Cell& cell, float height) const {
+    const bool lingers = isAmong(cell.overlooked, height) || !isYoung(cell.arrived_birth, false);
+    return placeOf(isAmong(cell.sure, height), isAmong(cell.coarse, height), lingers);
   }
   static bool isAmong(const std::vector<float>& heights, float height) {
     const auto [lowest, highest] = std::minmax_element(heights.begin(), heights.end());

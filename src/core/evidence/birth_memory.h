@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/evidence/judged_scan.h"
 #include "core/grid/brick_layout.h"
 #include "core/grid/grid_window.h"
 
@@ -12,12 +13,10 @@ namespace donex {
 
 /// What is remembered of a voxel.
 struct VoxelRecord {
-  std::uint32_t birth = 0;     ///< scan in which it became occupied; 0: it never was
-  std::uint32_t last_hit = 0;  ///< scan that hit it last
-  bool was_free = false;       ///< at its birth the place had been seen free
-  bool at_surface = false;     ///< at its birth it touched established voxels, or scans had seen a surface there
-  bool surely_free = false;    ///< at its birth most scans that knew of the place had seen it free
-  bool coarsely_free = false;  ///< at its birth only beams far apart had seen it free
+  std::uint32_t birth = 0;           ///< scan in which it became occupied; 0: it never was
+  std::uint32_t last_hit = 0;        ///< scan that hit it last
+  bool was_free = false;             ///< at its birth the place had been seen free
+  Place place = Place::kUnobserved;  ///< what it was at its birth
 
   bool occupied() const { return birth != 0; }
 };

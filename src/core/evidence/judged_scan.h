@@ -9,24 +9,24 @@
 
 namespace donex {
 
-/// What the grid knows of the place an echo hit.
+/// What the grid knows of the place an echo hit. A new place may be several of the last three at once.
 enum class Place : std::uint8_t {
-  kUnobserved,   ///< hit for the first time not long ago, and never seen free before; or not asked
-  kNew,          ///< occupied not long ago after it had been seen free: something came
-  kSurelyNew,    ///< the same, and most scans that knew anything of it had seen it free
-  kCoarselyNew,  ///< as kNew, but beams so far apart had seen it free that something low may have stood between them
-  kSurelyCoarselyNew,  ///< both of these
-  kAtSurface,  ///< a surface's flicker: it touched a settled one when it became occupied, or earlier scans saw one here
-  kSettled,    ///< occupied for longer than the birth window
+  kUnobserved = 0,  ///< hit for the first time not long ago, and never seen free before; or not asked
+  kAtSurface = 1,   ///< a surface's flicker: it touched a settled one when it was first hit, or scans had seen one here
+  kSettled = 2,     ///< occupied for longer than the birth window
+  kNew = 8,         ///< occupied not long ago after it had been seen free: something came
+  kSurelyNew = kNew | 1,    ///< and most scans that knew anything of it had seen it free
+  kCoarselyNew = kNew | 2,  ///< but beams so far apart had seen it free that something low may have stood between them
+  kLingering = kNew | 4,    ///< but half a second ago or more, or nobody had looked for so long: it may have stopped
 };
 
-inline bool isNewPlace(Place place) { return place >= Place::kNew && place <= Place::kSurelyCoarselyNew; }
-inline bool isSurelyNew(Place place) { return place == Place::kSurelyNew || place == Place::kSurelyCoarselyNew; }
-inline bool isCoarselyNew(Place place) { return place == Place::kCoarselyNew || place == Place::kSurelyCoarselyNew; }
-inline Place newPlace(bool surely, bool coarsely) {
-  if (coarsely) return surely ? Place::kSurelyCoarselyNew : Place::kCoarselyNew;
-  return surely ? Place::kSurelyNew : Place::kNew;
+constexpr bool is(Place place, Place kind) {
+  return (static_cast<unsigned>(place) & static_cast<unsigned>(kind)) == static_cast<unsigned>(kind);
 }
+constexpr Place both(Place a, Place b) {
+  return static_cast<Place>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
+}
+constexpr bool isNewPlace(Place place) { return is(place, Place::kNew); }
 
 /// How an echo takes part in clusters.
 enum class ClusterRole : std::uint8_t {

@@ -10,6 +10,17 @@ constexpr double kBeforeEverything = -std::numeric_limits<double>::infinity();
 constexpr float kRounding = 1e-3F;  // of sums of certainties
 constexpr int kAllScans = std::numeric_limits<int>::max();
 
+/// What a place is that was not hit before, or is taken for one that was not. `touches` a settled surface.
+Place placeAtBirth(const PlaceBefore& before, bool touches) {
+  if (before.surface || touches) return Place::kAtSurface;
+  if (!before.was_free) return Place::kUnobserved;
+  Place place = Place::kNew;
+  if (before.surely_free) place = both(place, Place::kSurelyNew);
+  if (before.coarsely_free) place = both(place, Place::kCoarselyNew);
+  if (before.overlooked) place = both(place, Place::kLingering);
+  return place;
+}
+
 }  // namespace
 
 ScanClock::ScanClock(double birth_window, const ScanClockOptions& options)
@@ -42,21 +53,25 @@ double ScanClock::stampOf(std::uint32_t scan) const {
 
 PlaceBefore weigh(const EvidenceConfig& config, const SightView& before, const Eigen::Vector3f& point, double since,
                   bool known, bool settled, const WeighingOptions& options) {
-  if (!config.free_evidence && !known) return {true, true};  // the paper: never hit is new
+  PlaceBefore place;
+  if (!config.free_evidence && !known) {  // the paper: never hit is new
+    place.was_free = place.surely_free = true;
+    return place;
+  }
   const int unsettled = config.free_evidence ? config.free_scans : 1;
   const int needed = settled && config.careful_sight ? config.settled_free_scans : unsettled;
   if (!config.free_evidence) {
-    const bool was_free = before.ask(point, since, needed).free >= needed;
-    return {was_free, was_free};
+    place.was_free = place.surely_free = before.ask(point, since, needed).free >= needed;
+    return place;
   }
   const SightView::Evidence seen = before.ask(point, since, kAllScans);
   // A surface that was seen before the last free scan did not come just now, and one that lasts did not at all.
   const bool outweighs = seen.free > options.stale_weight * seen.stale_surface && seen.free >= seen.lasting_surface;
-  PlaceBefore place;
   const float enough = static_cast<float>(needed) - kRounding;
   place.was_free = seen.certain_free >= enough && outweighs;
   place.surely_free = place.was_free && seen.free > seen.stale_surface + seen.hidden;
   place.coarsely_free = place.was_free && seen.fine_free < enough;
+  place.overlooked = place.was_free && seen.overlooked >= options.overlooked_time;
   place.surface = !place.was_free && seen.lasting_surface > 0;
   return place;
 }
@@ -74,16 +89,13 @@ Place Newness3d::judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& 
     if (!record.occupied() || place.was_free) {
       record.birth = clock.scan();
       record.was_free = place.was_free;
-      record.surely_free = place.surely_free;
-      record.coarsely_free = place.coarsely_free;
-      record.at_surface = place.surface || (place.was_free && config_.neighbourhood && touchesSettled(voxel, clock));
+      record.place = placeAtBirth(place, place.was_free && config_.neighbourhood && touchesSettled(voxel, clock));
     }
     record.last_hit = clock.scan();
   }
   if (!clock.isYoung(record.birth, record.was_free)) return Place::kSettled;
-  if (record.at_surface) return Place::kAtSurface;
-  if (!record.was_free) return Place::kUnobserved;
-  return newPlace(record.surely_free, record.coarsely_free);
+  const bool lingers = isNewPlace(record.place) && !clock.isYoung(record.birth, false);
+  return lingers ? both(record.place, Place::kLingering) : record.place;
 }
 
 bool Newness3d::touchesSettled(const Index3& voxel, const ScanClock& clock) const {
@@ -122,7 +134,7 @@ void Newness2d::settle(Cell& cell, const ScanClock& clock) const {
   };
   settle_range(cell.arrived, cell.arrived_birth, true);
   settle_range(cell.found, cell.found_birth, false);
-  if (cell.arrived.empty()) cell.surely = cell.coarsely = HeightRange{};
+  if (cell.arrived.empty()) cell.surely = cell.coarsely = cell.overlooked = HeightRange{};
   if (cell.found.empty()) cell.at_surface = HeightRange{};
 }
 
@@ -146,7 +158,7 @@ Place Newness2d::judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& 
     if (!left.was_free) return Place::kSettled;
     cell.settled = HeightRange{};
   }
-  if (cell.arrived.holds(height)) return cell.placeInArrived(height);
+  if (cell.arrived.holds(height)) return cell.placeInArrived(height, clock);
   if (cell.found.holds(height) && !missed) return cell.placeInFound(height);
   // What has left was weighed since its last hit: the surface that it was does not count against what comes now.
   const PlaceBefore place =
@@ -159,8 +171,18 @@ Place Newness2d::judge(const Eigen::Vector3f& in_window, const Eigen::Vector3f& 
   range.extend(height);
   if (comes && place.surely_free) cell.surely.extend(height);
   if (comes && place.coarsely_free) cell.coarsely.extend(height);
+  if (comes && place.overlooked) cell.overlooked.extend(height);
   if (touches || place.surface) cell.at_surface.extend(height);
-  return comes ? cell.placeInArrived(height) : cell.placeInFound(height);
+  return comes ? cell.placeInArrived(height, clock) : cell.placeInFound(height);
+}
+
+Place Newness2d::Cell::placeInArrived(float height, const ScanClock& clock) const {
+  PlaceBefore before;
+  before.was_free = true;
+  before.surely_free = surely.holds(height);
+  before.coarsely_free = coarsely.holds(height);
+  before.overlooked = overlooked.holds(height) || !clock.isYoung(arrived_birth, false);
+  return placeAtBirth(before, false);
 }
 
 bool Newness2d::touchesSettled(int x, int y, float height) const {

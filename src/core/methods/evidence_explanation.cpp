@@ -11,16 +11,8 @@ EchoReason reasonOf(const JudgedScan& scan, std::size_t i, bool inside) {
   if (scan.is_solid[i] == 0) return EchoReason::kOwnBody;
   if (scan.roles[i] == ClusterRole::kLoose) return EchoReason::kLoose;
   if (scan.roles[i] != ClusterRole::kConnects) return EchoReason::kGround;
-  switch (scan.places[i]) {
-    case Place::kNew:
-    case Place::kCoarselyNew:
-    case Place::kSurelyCoarselyNew:
-    case Place::kSurelyNew: return EchoReason::kNewAlone;
-    case Place::kAtSurface:
-    case Place::kSettled: return EchoReason::kSettled;
-    case Place::kUnobserved: break;
-  }
-  return EchoReason::kUnobserved;
+  if (scan.places[i] == Place::kUnobserved) return EchoReason::kUnobserved;
+  return isNewPlace(scan.places[i]) ? EchoReason::kNewAlone : EchoReason::kSettled;
 }
 
 }  // namespace

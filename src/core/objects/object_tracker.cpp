@@ -220,14 +220,18 @@ Proof ObjectTracker::proofOf(const Track& track, const MotionTests& tests, doubl
     if (isBelieved(track.receding, stamp)) return Proof::kRearReceded;
     if (isBelieved(track.shifting, stamp) || isBelieved(track.displaced, stamp)) return Proof::kShapeElsewhere;
     if (isBelieved(track.advancing, stamp)) return Proof::kEndsMoved;
-    if (rules_.isNew(segment) && !rules_.isPole(segment) && !rules_.isNewOverhead(segment, sensor_))
-      return Proof::kEnteredFree;
+    if (hasEntered(segment)) return Proof::kEnteredFree;
   }
   // What was proven by its new echoes alone, and has none any more, is what they uncovered: a car behind its open door.
-  const bool is_it_still = segment.new_echoes > 0 || stamp - track.last_moved_whole <= options_.moves_on;
+  const bool is_it_still = segment.freshEchoes() > 0 || stamp - track.last_moved_whole <= options_.moves_on;
   const bool just_stopped = track.dynamic && is_it_still && !SegmentRules::isMostlySettled(segment) &&
                             stamp - track.last_motion <= config_.stop_time;
   return just_stopped ? Proof::kMovedBefore : Proof::kNone;
+}
+
+bool ObjectTracker::hasEntered(const Segment& segment) const {
+  return rules_.isNew(segment) && rules_.isFresh(segment) && !rules_.isPole(segment) &&
+         !rules_.isNewOverhead(segment, sensor_);
 }
 
 Verdict ObjectTracker::decide(Track& track, const MotionTests& tests, double stamp, const Segment& segment) const {

@@ -124,6 +124,7 @@ class ObjectTracker {
   void placeWorld(double stamp, const Segments& segments);
   void testMotion(Track& track, const MotionTests& tests, double stamp, const Segment& segment) const;
   Proof proofOf(const Track& track, const MotionTests& tests, double stamp, const Segment& segment) const;
+  bool hasEntered(const Segment& segment) const;
   Verdict decide(Track& track, const MotionTests& tests, double stamp, const Segment& segment) const;
   void complete(const Segments& segments, const Predictions& predictions, Verdicts& verdicts) const;
   void addObject(std::size_t segment_index, Proof proof, double stamp);

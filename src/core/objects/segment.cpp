@@ -5,7 +5,7 @@
 namespace donex {
 void describeEchoes(const JudgedScan& scan, Segment& segment) {
   Eigen::Array3f low = Eigen::Array3f::Constant(std::numeric_limits<float>::infinity()), high = -low;
-  segment.new_echoes = segment.surely_new_echoes = segment.coarsely_new_echoes = 0;
+  segment.new_echoes = segment.surely_new_echoes = segment.coarsely_new_echoes = segment.lingering_echoes = 0;
   segment.surface_echoes = segment.settled_echoes = 0;
   segment.lowest = segment.lowest_new = std::numeric_limits<float>::infinity();
   segment.highest_new = -segment.lowest_new;
@@ -18,8 +18,9 @@ void describeEchoes(const JudgedScan& scan, Segment& segment) {
       segment.lowest_new = std::min(segment.lowest_new, height);
       segment.highest_new = std::max(segment.highest_new, height);
     }
-    segment.surely_new_echoes += isSurelyNew(place) ? 1 : 0;
-    segment.coarsely_new_echoes += isCoarselyNew(place) ? 1 : 0;
+    segment.surely_new_echoes += is(place, Place::kSurelyNew) ? 1 : 0;
+    segment.coarsely_new_echoes += is(place, Place::kCoarselyNew) ? 1 : 0;
+    segment.lingering_echoes += is(place, Place::kLingering) ? 1 : 0;
     segment.surface_echoes += place == Place::kAtSurface ? 1 : 0;
     segment.settled_echoes += place == Place::kSettled ? 1 : 0;
     low = low.min(scan.points[echo].array());

@@ -22,7 +22,7 @@ struct Segment {
 
   std::pmr::vector<std::uint32_t> echoes;  ///< indices into the scan
   int new_echoes = 0;
-  int surely_new_echoes = 0, coarsely_new_echoes = 0;  ///< of new_echoes
+  int surely_new_echoes = 0, coarsely_new_echoes = 0, lingering_echoes = 0;  ///< of new_echoes
   int surface_echoes = 0;
   int settled_echoes = 0;
   float lowest = 0.0F;                          ///< height above ground [m]; 0 where no ground is known
@@ -34,6 +34,7 @@ struct Segment {
   bool is_of_plume = false;  ///< of dust or spray, not a thing
   std::uint32_t object = 0;  ///< that its echoes of earlier parts of the turn belong to; 0: none
 
+  int freshEchoes() const { return new_echoes - lingering_echoes; }
   Eigen::Vector3d center() const { return 0.5 * (low + high); }
   Eigen::Vector3d extent() const { return high - low; }
 };

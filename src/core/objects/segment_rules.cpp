@@ -20,6 +20,10 @@ bool SegmentRules::isNew(const Segment& segment) const {
   return enough && outweighs && by_share && !fitsBetweenBeams(segment);
 }
 
+bool SegmentRules::isFresh(const Segment& segment) const {
+  return segment.freshEchoes() >= std::max<double>(config_.min_echoes, options_.least_fresh_share * segment.new_echoes);
+}
+
 bool SegmentRules::fitsBetweenBeams(const Segment& segment) const {
   return segment.extent().z() < options_.low && segment.coarsely_new_echoes > options_.most_coarse * segment.new_echoes;
 }

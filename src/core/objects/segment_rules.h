@@ -7,10 +7,11 @@
 namespace donex {
 
 struct SegmentOptions {
-  double longest = 25.0;          ///< beyond: a wall, a hedge, or objects that touch [m]
-  double least_new_share = 0.15;  ///< of all echoes that must be new: less is the frayed edge of something that stands
-  double unsure_new_share = 0.5;  ///< of all echoes that must be new where they are not surely so
-  double low = 0.5;               ///< what is lower fits between beams [m]
+  double longest = 25.0;           ///< beyond: a wall, a hedge, or objects that touch [m]
+  double least_new_share = 0.15;   ///< of all echoes that must be new: less is the frayed edge of something that stands
+  double unsure_new_share = 0.5;   ///< of all echoes that must be new where they are not surely so
+  double least_fresh_share = 0.1;  ///< of the new echoes that must not linger: what moves hits new places all the time
+  double low = 0.5;                ///< what is lower fits between beams [m]
   double most_coarse = 0.5;    ///< of the new echoes of something low: with more that are so it may have stood before
   double slim = 0.15;          ///< what is so slim and higher than `low` is a pole [m]
   double narrow = 0.25;        ///< a strip of something larger, seen through a gap, may be narrower than that [m]
@@ -39,6 +40,9 @@ class SegmentRules {
 
   /// Enough of the segment is new, by number and against what is settled, and it cannot have stood between beams.
   bool isNew(const Segment& segment) const;
+
+  /// Its new places are not all of those that what has stopped leaves.
+  bool isFresh(const Segment& segment) const;
 
   /// Something low that beams saw through which lay far apart there: a guard rail, a kerb.
   bool fitsBetweenBeams(const Segment& segment) const;

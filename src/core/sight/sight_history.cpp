@@ -167,7 +167,8 @@ ScanSight SightHistory::newestSeenFrom(const Eigen::Isometry3d& odom_from_points
 }
 
 void SightView::add(double stamp, const ImageSight& sight) {
-  kept_[count_] = {stamp, sight.image};
+  kept_[count_] = {stamp, sight.image, 0.0};
+  if (count_ > 0) kept_[count_ - 1].turn_lasted = kept_[count_ - 1].stamp - stamp;
   for (std::size_t row = 0; row < 3; ++row) {
     const auto axis = static_cast<Eigen::Index>(row);
     for (std::size_t column = 0; column < 3; ++column) {
@@ -202,11 +203,15 @@ DONEX_WIDE_LOOPS SightView::Evidence SightView::ask(const Eigen::Vector3f& point
   Pixels pixels;
   place(point, count, pixels);
   Evidence evidence;
+  int is_overlooked = 1;  // in the turn
   for (std::size_t i = 0; i < count && evidence.free < enough; ++i) {
     const SightPixels::Pixel pixel{pixels.valid[i] != 0, pixels.column[i], pixels.row[i], pixels.range[i]};
     const SightImage::Sight sight = kept_[i].image->atPixel(pixel, margin);
     // Counted without a branch: neighbouring scans differ in what they say.
     const int is_surface = sight == SightImage::Sight::kSurface ? 1 : 0;
+    is_overlooked &= sight == SightImage::Sight::kUnknown ? 1 : 0;
+    evidence.overlooked += evidence.free == 0 ? is_overlooked * kept_[i].turn_lasted : 0.0;
+    is_overlooked |= kept_[i].turn_lasted > 0.0 ? 1 : 0;
     evidence.stale_surface += evidence.free > 0 ? is_surface : 0;
     evidence.lasting_surface += kept_[0].stamp - kept_[i].stamp >= Evidence::kApproach ? is_surface : 0;
     evidence.surface += is_surface;

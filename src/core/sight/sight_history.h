@@ -77,6 +77,7 @@ class SightView {
     int hidden = 0;             ///< scans that saw something before it
     int stale_surface = 0;      ///< of `surface`: before the newest scan that saw through
     int lasting_surface = 0;    ///< of `surface`: at least kApproach before the newest scan
+    double overlooked = 0.0;    ///< time since the newest scan that saw through in which no scan looked there [s]
 
     /// What comes at walking pace is within the margin of a place for so long before it hits it [s].
     static constexpr double kApproach = 0.45;
@@ -98,6 +99,7 @@ class SightView {
   struct Kept {
     double stamp;
     const SightImage* image;
+    double turn_lasted;  ///< where it is its turn's last one here; else 0 [s]
   };
   /// sensor_from_points of every image, number by number: a point is placed in all of them together.
   struct Placements {

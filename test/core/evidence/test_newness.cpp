@@ -15,7 +15,9 @@ using testing::gridOf;
 using testing::RestlessRoom;
 using testing::Rig;
 
-constexpr std::size_t kPlaces = 7;
+constexpr std::size_t kPlaces = 16;
+constexpr Place kSurelyCoarselyNew = both(Place::kSurelyNew, Place::kCoarselyNew);
+constexpr Place kSurelyLingering = both(Place::kSurelyNew, Place::kLingering);
 
 struct Case {
   unsigned switches;  ///< bits: free_evidence, careful_sight, birth_age, neighbourhood
@@ -57,23 +59,29 @@ class AgainstThePlainRules : public ::testing::TestWithParam<Case> {
   }
 };
 
-void expectAllKinds(const std::array<int, kPlaces>& places, bool neighbourhood) {
-  const auto count = [&](Place place) { return places[static_cast<std::size_t>(place)]; };
+void expectAllKinds(const std::array<int, kPlaces>& places, const EvidenceConfig& config) {
+  const auto count = [&](Place kind) {
+    int all = 0;
+    for (std::size_t place = 0; place < kPlaces; ++place) {
+      const bool is_one = isNewPlace(kind) ? is(Place(place), kind) : Place(place) == kind;
+      all += is_one ? places[place] : 0;
+    }
+    return all;
+  };
   EXPECT_GT(count(Place::kUnobserved), 30);
-  EXPECT_GT(count(Place::kSurelyNew) + count(Place::kSurelyCoarselyNew), 30);
+  EXPECT_GT(count(Place::kSurelyNew), 30);
   EXPECT_GT(count(Place::kSettled), 30);
   // Without the neighbourhood only surfaces that earlier scans saw in the place itself are left.
-  if (neighbourhood) {
-    EXPECT_GT(places[static_cast<std::size_t>(Place::kAtSurface)], 30);
+  if (config.neighbourhood) {
+    EXPECT_GT(count(Place::kAtSurface), 30);
+  }
+  if (config.birth_age) {
+    EXPECT_GT(count(Place::kLingering), 30);
   }
 }
 
-TEST_P(AgainstThePlainRules, In3d) {
-  expectAllKinds(compare<Newness3d, oracle::Newness3d>(), config().evidence.neighbourhood);
-}
-TEST_P(AgainstThePlainRules, In2d) {
-  expectAllKinds(compare<Newness2d, oracle::Newness2d>(), config().evidence.neighbourhood);
-}
+TEST_P(AgainstThePlainRules, In3d) { expectAllKinds(compare<Newness3d, oracle::Newness3d>(), config().evidence); }
+TEST_P(AgainstThePlainRules, In2d) { expectAllKinds(compare<Newness2d, oracle::Newness2d>(), config().evidence); }
 
 std::vector<Case> cases() {
   std::vector<Case> all;
@@ -102,19 +110,28 @@ Scan ahead(double stamp, double range = 10.0, const Eigen::Isometry3d& pose = Ei
   return scan;
 }
 
+/// The wall behind alone: nothing comes back from ahead.
+Scan behind(double stamp) {
+  Scan scan = ahead(stamp);
+  const auto is_ahead = [](const Eigen::Vector3f& echo) { return echo.x() > 0.0F; };
+  scan.echoes.erase(std::remove_if(scan.echoes.begin(), scan.echoes.end(), is_ahead), scan.echoes.end());
+  return scan;
+}
+
 template <class Newness>
 class Newnesses : public ::testing::Test {};
 using Both = ::testing::Types<Newness3d, Newness2d>;
 TYPED_TEST_SUITE(Newnesses, Both, );
 
-TYPED_TEST(Newnesses, WhatComesIntoFreeSpaceIsNewUntilItsBirthWindowIsOver) {
+TYPED_TEST(Newnesses, WhatComesIntoFreeSpaceIsNewUntilItsBirthWindowIsOverAndLingersMeanwhile) {
   Config config = gridOf(0.2);
   config.evidence.birth_window = 1.0;
   Rig<TypeParam> rig(config);
   for (int k = 0; k < 10; ++k) rig.first(ahead(0.125 * k));
   for (int k = 10; k <= 30; ++k) {
-    const bool young = 0.125 * (k - 10) <= 1.0;
-    EXPECT_EQ(rig.first(ahead(0.125 * k, 6.0)), young ? Place::kSurelyNew : Place::kSettled) << "scan " << k;
+    const double age = 0.125 * (k - 10);
+    const Place young = age <= 0.5 ? Place::kSurelyNew : kSurelyLingering;
+    EXPECT_EQ(rig.first(ahead(0.125 * k, 6.0)), age <= 1.0 ? young : Place::kSettled) << "scan " << k;
   }
 }
 
@@ -127,7 +144,26 @@ TYPED_TEST(Newnesses, BeamsFarApartHaveToSeeAPlaceFreeMoreOften) {
   };
   EXPECT_EQ(placeAfter(3, 0.02), Place::kSurelyNew);
   EXPECT_EQ(placeAfter(3, 0.1), Place::kUnobserved) << "0.8 m apart there, half as sure";
-  EXPECT_EQ(placeAfter(5, 0.1), Place::kSurelyCoarselyNew);
+  EXPECT_EQ(placeAfter(5, 0.1), kSurelyCoarselyNew);
+}
+
+TYPED_TEST(Newnesses, WhatComesWhereNobodyLookedForLongLingersFromItsBirth) {
+  for (int unseen = 0; unseen <= 6; ++unseen) {
+    Rig<TypeParam> rig(gridOf(0.2));
+    double stamp = 0.0;
+    for (int k = 0; k < 4; ++k) rig.first(ahead(stamp += 0.125));
+    for (int k = 0; k < unseen; ++k) rig.first(behind(stamp += 0.125));
+    EXPECT_EQ(rig.first(ahead(stamp += 0.125, 6.0)), unseen >= 4 ? kSurelyLingering : Place::kSurelyNew) << unseen;
+  }
+}
+
+TYPED_TEST(Newnesses, WhatComesOutOfAShadowDoesNotLinger) {
+  Rig<TypeParam> rig(gridOf(0.2));
+  double stamp = 0.0;
+  for (int k = 0; k < 10; ++k) rig.first(ahead(stamp += 0.125));
+  for (int k = 0; k < 6; ++k) rig.first(ahead(stamp += 0.125, 4.0));
+  EXPECT_TRUE(isNewPlace(rig.first(ahead(stamp += 0.125, 8.0))));
+  EXPECT_FALSE(is(rig.first(ahead(stamp += 0.125, 8.0)), Place::kLingering));
 }
 
 TYPED_TEST(Newnesses, WithoutAnAgeOnlyTheScanOfBirthIsNew) {

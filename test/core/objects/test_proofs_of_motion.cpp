@@ -144,7 +144,7 @@ TEST(ProofsOfMotion, WhatStopsStaysDynamicForTheStopTime) {
   }
 }
 
-TEST(ProofsOfMotion, WhatHasNoNewEchoLeftHasNotJustStoppedUnlessItMovedAsAWhole) {
+TEST(ProofsOfMotion, WhatHasNoFreshEchoLeftHasNotJustStoppedUnlessItMovedAsAWhole) {
   // What a door uncovered that has just closed, and a vehicle that has just stopped.
   for (const bool moves_whole : {false, true}) {
     ObjectConfig config;
@@ -154,6 +154,7 @@ TEST(ProofsOfMotion, WhatHasNoNewEchoLeftHasNotJustStoppedUnlessItMovedAsAWhole)
     for (int k = 0; k < 18; ++k) {
       JudgedScene scene(0.1 * k);
       addVehicle(scene, 8.0 + 0.5 * std::min(k, 9), 2.0, k < 10 ? Place::kNew : Place::kUnobserved);
+      if (k >= 10) scene.echo({12.5, 2.0, 0.8}, Place::kLingering);
       scene.face({20.0, -2.0, 0.0}, {0.0, 8.0, 0.0}, 3.0, Place::kSettled, 0.1);  // seen where it has left
       moving += followed.step(scene);
       if (k < (moves_whole ? 14 : 10)) continue;  // until then its former places, or its new echoes, tell
@@ -239,6 +240,24 @@ TEST(ProofsOfMotion, APoleThatScansMissedHasNotEntered) {
     scene.face({10.0, 2.0, 0.5}, {0.0, width, 0.0}, 1.5, Place::kSurelyNew);
     EXPECT_EQ(followed.step(scene) > 0, width > 0.3) << width;
   }
+}
+
+/// A face of 99 new echoes of which so many do not linger.
+std::size_t movingOf(std::size_t fresh, int min_echoes) {
+  ObjectConfig config;
+  config.min_echoes = min_echoes;
+  Followed followed(config);
+  JudgedScene scene(0.0);
+  scene.face({10.0, 2.0, 0.5}, {0.0, 0.8, 0.0}, 1.0, both(Place::kSurelyNew, Place::kLingering));
+  for (std::size_t i = 0; i < fresh; ++i) scene.judged.places[9 * i % 99] = Place::kSurelyNew;
+  return followed.step(scene);
+}
+
+TEST(ProofsOfMotion, WhatHitsNoFreshPlacesStandsThereHoweverNewTheyAre) {
+  EXPECT_EQ(movingOf(0, 5), 0U);
+  EXPECT_EQ(movingOf(9, 5), 0U) << "not a tenth of them";
+  EXPECT_EQ(movingOf(10, 5), 99U);
+  EXPECT_EQ(movingOf(10, 11), 0U) << "fewer than min_echoes";
 }
 
 }  // namespace

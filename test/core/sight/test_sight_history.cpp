@@ -90,6 +90,45 @@ TEST(SightHistory, CountsFreeSurfaceAndHiddenApart) {
   EXPECT_EQ(sum(view(history).ask(Eigen::Vector3f(1.0F, 0.0F, 9.0F), kEver, kAll)), 0) << "above every beam";
 }
 
+/// The half of a scan behind the sensor: nobody looks ahead.
+Scan behind(Scan scan) {
+  const auto is_ahead = [](const Eigen::Vector3f& echo) { return echo.x() > 0.0F; };
+  scan.echoes.erase(std::remove_if(scan.echoes.begin(), scan.echoes.end(), is_ahead), scan.echoes.end());
+  return scan;
+}
+
+TEST(SightHistory, TellsForHowLongNobodyLookedSinceAPlaceWasFree) {
+  SightHistory history(10.0, 0.0, 0.5F, kReading);
+  const auto overlooked = [&] { return view(history).ask(Eigen::Vector3f(10.0F, 0.0F, 0.0F), kEver, kAll).overlooked; };
+  add(history, behind(shell(0.0, 20.0)));
+  add(history, shell(1.0, 20.0));
+  EXPECT_EQ(overlooked(), 0.0) << "before it was free nobody need have looked";
+  for (const double stamp : {1.25, 1.5, 2.0}) add(history, behind(shell(stamp, 20.0)));
+  EXPECT_EQ(overlooked(), 1.0) << "each turn stands for the time since the one before";
+  add(history, shell(2.5, 10.0));
+  add(history, shell(3.0, 5.0));
+  EXPECT_EQ(overlooked(), 1.0) << "a surface was seen, then it was hidden: somebody looked";
+  add(history, behind(shell(3.25, 20.0)));
+  EXPECT_EQ(overlooked(), 1.25);
+  add(history, shell(4.0, 20.0));
+  EXPECT_EQ(overlooked(), 0.0) << "free again";
+}
+
+TEST(SightHistory, WhatOneOfTwoSensorsLooksAtIsNotOverlooked) {
+  for (const bool looks_first : {true, false}) {
+    SightHistory history(10.0, 0.0, 0.5F, kReading);
+    for (int k = 0; k < 8; ++k) {
+      Scan looks = shell(0.25 * k, k == 0 ? 20.0 : 10.0), does_not = behind(shell(0.25 * k, 20.0));
+      does_not.base_from_sensor.translation().x() = -0.5;
+      add(history, looks_first ? looks : does_not);
+      add(history, looks_first ? does_not : looks);
+    }
+    const Evidence evidence = view(history).ask(Eigen::Vector3f(10.0F, 0.0F, 0.0F), kEver, kAll);
+    EXPECT_EQ(evidence.surface, 7);
+    EXPECT_EQ(evidence.overlooked, 0.0) << looks_first;
+  }
+}
+
 /// Beams `apart`: 0.036 (2 degrees) is as those of 16 beams.
 Scan sparseShell(double stamp, double range, double apart = 0.036) {
   Scan scan;
