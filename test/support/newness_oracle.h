@@ -181,7 +181,7 @@ class Newness2d : public Newness {
     std::vector<float> surfaces;    ///< heights in `found` that belonged to a surface
     std::vector<float> sure;        ///< heights in `arrived` that had surely been free
     std::vector<float> coarse;      ///< ... that only beams far apart had seen free
-    std::vector<float> overlooked;  ///< ... where nobody had looked for half a second
+    std::vector<float> overlooked;  ///< ... that had been out of view for half a second
     int arrived_birth = kNever, found_birth = kNever;
     std::vector<int> hits;  ///< scans
   };

@@ -17,7 +17,7 @@ enum class Place : std::uint8_t {
   kNew = 8,         ///< occupied not long ago after it had been seen free: something came
   kSurelyNew = kNew | 1,    ///< and most scans that knew anything of it had seen it free
   kCoarselyNew = kNew | 2,  ///< but beams so far apart had seen it free that something low may have stood between them
-  kLingering = kNew | 4,    ///< but half a second ago or more, or nobody had looked for so long: it may have stopped
+  kLingering = kNew | 4,    ///< but half a second ago or more, or out of view for so long: it may have stopped
 };
 
 constexpr bool is(Place place, Place kind) {

@@ -102,7 +102,7 @@ class Newness2d {
     HeightRange found;       ///< unobserved, or at a surface
     HeightRange surely;      ///< the part of `arrived` that had surely been free
     HeightRange coarsely;    ///< the part of `arrived` that beams far apart had seen free
-    HeightRange overlooked;  ///< the part of `arrived` where nobody had looked for long
+    HeightRange overlooked;  ///< the part of `arrived` that had been out of view for long
     HeightRange at_surface;  ///< the part of `found` that belonged to a surface when it was found
     std::uint32_t arrived_birth = 0, found_birth = 0;
     std::uint32_t last_hit = 0, hit_before = 0;  ///< scans
@@ -126,14 +126,14 @@ struct PlaceBefore {
   bool was_free = false;
   bool surely_free = false;    ///< most scans that knew anything of it saw it free
   bool coarsely_free = false;  ///< free, but seen by beams so far apart that something low may have stood between them
-  bool overlooked = false;     ///< free, but then nobody looked for so long that what came may have stopped since
+  bool overlooked = false;     ///< free, but then out of view for so long that what came may have stopped since
   bool surface = false;        ///< not free: a surface was seen there for longer than anything takes to come
 };
 
 struct WeighingOptions {
   /// Free scans that outweigh one that saw a surface before: a beam that grazes an edge is as often beside it as on it.
   int stale_weight = 2;
-  double overlooked_time = 0.5;  ///< without a look since it was last seen free, as long as what is found is young [s]
+  double overlooked_time = 0.5;  ///< out of view since it was last seen free, as long as what is found is young [s]
 };
 
 /// Weighs what the scans since `since` [s] saw at `point`. `known`: the place is remembered, so it is forgotten only by

@@ -209,7 +209,7 @@ DONEX_WIDE_LOOPS SightView::Evidence SightView::ask(const Eigen::Vector3f& point
     const SightImage::Sight sight = kept_[i].image->atPixel(pixel, margin);
     // Counted without a branch: neighbouring scans differ in what they say.
     const int is_surface = sight == SightImage::Sight::kSurface ? 1 : 0;
-    is_overlooked &= sight == SightImage::Sight::kUnknown ? 1 : 0;
+    is_overlooked &= sight == SightImage::Sight::kUnknown && !kept_[i].image->sees(pixel) ? 1 : 0;
     evidence.overlooked += evidence.free == 0 ? is_overlooked * kept_[i].turn_lasted : 0.0;
     is_overlooked |= kept_[i].turn_lasted > 0.0 ? 1 : 0;
     evidence.stale_surface += evidence.free > 0 ? is_surface : 0;

@@ -77,7 +77,7 @@ class SightView {
     int hidden = 0;             ///< scans that saw something before it
     int stale_surface = 0;      ///< of `surface`: before the newest scan that saw through
     int lasting_surface = 0;    ///< of `surface`: at least kApproach before the newest scan
-    double overlooked = 0.0;    ///< time since the newest scan that saw through in which no scan looked there [s]
+    double overlooked = 0.0;    ///< time since the newest scan that saw through in which it was out of view [s]
 
     /// What comes at walking pace is within the margin of a place for so long before it hits it [s].
     static constexpr double kApproach = 0.45;

@@ -59,6 +59,12 @@ class SightImage {
 
   /// Whether anything came back from about the direction of a point of the image's frame [m].
   bool looksAt(const Eigen::Vector3f& point) const;
+  /// Whether a pixel is in the field of view, from the lowest beam to the highest; to be asked when the turn is over.
+  bool sees(const SightPixels::Pixel& pixel) const {
+    const SightPixels::Span rows = beams_.span();
+    return pixel.valid && covered_[static_cast<std::size_t>(pixel.column)] != 0 && pixel.row >= rows.lowest &&
+           pixel.row <= rows.highest;
+  }
 
   /// Single lines of sight are not asked for any more: gives their storage to a later image. False where it has none.
   bool handOn(SightImage& later) {

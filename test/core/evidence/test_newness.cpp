@@ -110,7 +110,7 @@ Scan ahead(double stamp, double range = 10.0, const Eigen::Isometry3d& pose = Ei
   return scan;
 }
 
-/// The wall behind alone: nothing comes back from ahead.
+/// The wall behind alone: what lies ahead is out of view.
 Scan behind(double stamp) {
   Scan scan = ahead(stamp);
   const auto is_ahead = [](const Eigen::Vector3f& echo) { return echo.x() > 0.0F; };
@@ -147,7 +147,7 @@ TYPED_TEST(Newnesses, BeamsFarApartHaveToSeeAPlaceFreeMoreOften) {
   EXPECT_EQ(placeAfter(5, 0.1), kSurelyCoarselyNew);
 }
 
-TYPED_TEST(Newnesses, WhatComesWhereNobodyLookedForLongLingersFromItsBirth) {
+TYPED_TEST(Newnesses, WhatComesOutOfViewLingersFromItsBirth) {
   for (int unseen = 0; unseen <= 6; ++unseen) {
     Rig<TypeParam> rig(gridOf(0.2));
     double stamp = 0.0;

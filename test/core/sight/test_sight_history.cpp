@@ -90,26 +90,32 @@ TEST(SightHistory, CountsFreeSurfaceAndHiddenApart) {
   EXPECT_EQ(sum(view(history).ask(Eigen::Vector3f(1.0F, 0.0F, 9.0F), kEver, kAll)), 0) << "above every beam";
 }
 
-/// The half of a scan behind the sensor: nobody looks ahead.
+/// The half of a scan behind the sensor: what lies ahead is out of view.
 Scan behind(Scan scan) {
   const auto is_ahead = [](const Eigen::Vector3f& echo) { return echo.x() > 0.0F; };
   scan.echoes.erase(std::remove_if(scan.echoes.begin(), scan.echoes.end(), is_ahead), scan.echoes.end());
   return scan;
 }
 
-TEST(SightHistory, TellsForHowLongNobodyLookedSinceAPlaceWasFree) {
+TEST(SightHistory, TellsForHowLongAPlaceWasOutOfViewSinceItWasFree) {
   SightHistory history(10.0, 0.0, 0.5F, kReading);
   const auto overlooked = [&] { return view(history).ask(Eigen::Vector3f(10.0F, 0.0F, 0.0F), kEver, kAll).overlooked; };
   add(history, behind(shell(0.0, 20.0)));
   add(history, shell(1.0, 20.0));
-  EXPECT_EQ(overlooked(), 0.0) << "before it was free nobody need have looked";
+  EXPECT_EQ(overlooked(), 0.0) << "before it was free it need not have been in view";
   for (const double stamp : {1.25, 1.5, 2.0}) add(history, behind(shell(stamp, 20.0)));
   EXPECT_EQ(overlooked(), 1.0) << "each turn stands for the time since the one before";
   add(history, shell(2.5, 10.0));
   add(history, shell(3.0, 5.0));
-  EXPECT_EQ(overlooked(), 1.0) << "a surface was seen, then it was hidden: somebody looked";
+  EXPECT_EQ(overlooked(), 1.0) << "a surface was seen, then it was hidden: in view";
   add(history, behind(shell(3.25, 20.0)));
   EXPECT_EQ(overlooked(), 1.25);
+  Scan gap = shell(3.75, 20.0);
+  const auto is_level = [](const Eigen::Vector3f& echo) { return std::abs(echo.z()) < 0.1F * echo.head<2>().norm(); };
+  gap.echoes.erase(std::remove_if(gap.echoes.begin(), gap.echoes.end(), is_level), gap.echoes.end());
+  add(history, gap);
+  add(history, shell(3.875, 5.0));  // a turn is measured when it is over
+  EXPECT_EQ(overlooked(), 1.25) << "between the lowest and the highest beam: nothing came back";
   add(history, shell(4.0, 20.0));
   EXPECT_EQ(overlooked(), 0.0) << "free again";
 }
