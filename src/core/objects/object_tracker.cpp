@@ -217,7 +217,7 @@ Proof ObjectTracker::proofOf(const Track& track, const MotionTests& tests, doubl
   // Signs tell what has moved within the last second; its box tells that it has stopped since.
   const bool rests = stamp - track.rest.since >= options_.rests_after;
   if (!rests && !rules_.isThin(segment, sensor_) && !tests.hangs(segment)) {
-    if (isBelieved(track.receding, stamp)) return Proof::kRearReceded;
+    if (rules_.hasRear(segment) && isBelieved(track.receding, stamp)) return Proof::kRearReceded;
     if (isBelieved(track.shifting, stamp) || isBelieved(track.displaced, stamp)) return Proof::kShapeElsewhere;
     if (isBelieved(track.advancing, stamp)) return Proof::kEndsMoved;
     if (hasEntered(segment)) return Proof::kEnteredFree;

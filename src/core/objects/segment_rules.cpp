@@ -47,6 +47,13 @@ bool SegmentRules::isThin(const Segment& segment, const Eigen::Vector3d& sensor)
   return distance < options_.thin_reach && segment.extent().z() < options_.thin_angle * distance;
 }
 
+bool SegmentRules::hasRear(const Segment& segment) const {
+  const Eigen::Vector3d extent = segment.extent();
+  const bool is_rail = extent.z() < options_.rail_height && extent.head<2>().maxCoeff() > options_.rail_length;
+  const bool is_one_beam_high_up = extent.z() < options_.one_beam && segment.lowest > options_.high;
+  return !is_rail && !is_one_beam_high_up;
+}
+
 bool SegmentRules::isPole(const Segment& segment) const {
   const Eigen::Vector3d extent = segment.extent();
   return extent.head<2>().maxCoeff() < options_.slim && extent.z() > options_.low;

@@ -15,6 +15,10 @@ struct SegmentOptions {
   double most_coarse = 0.5;    ///< of the new echoes of something low: with more that are so it may have stood before
   double slim = 0.15;          ///< what is so slim and higher than `low` is a pole [m]
   double narrow = 0.25;        ///< a strip of something larger, seen through a gap, may be narrower than that [m]
+  double rail_length = 3.0;    ///< what is longer, and lower than the next, is a rail or a kerb [m]
+  double rail_height = 0.6;    ///< [m]
+  double one_beam = 0.12;      ///< what is lower was hit by one beam alone [m]
+  double high = 0.8;           ///< and what begins higher by none beneath, though it may stand [m]
   double overhead = 2.0;       ///< above ground: above people's heads [m]
   double upright_ratio = 0.3;  ///< height by length: about that of a car
   double thin_angle = 0.02;    ///< seen under less, it is no higher than one or two beams of any sensor [rad]
@@ -59,6 +63,10 @@ class SegmentRules {
 
   /// Near, and yet hardly higher than a beam: an edge, a wire, a branch. `sensor` in the odometry frame.
   bool isThin(const Segment& segment, const Eigen::Vector3d& sensor) const;
+
+  /// Its rear tells: unlike a rail's end, or a single beam's on the upper part of something that stands, which leave
+  /// their places as the sensor comes nearer and other beams hit them.
+  bool hasRear(const Segment& segment) const;
 
   /// Upright and slimmer than anything that moves: where beams beside one another lie farther apart, whole scans miss
   /// it.
