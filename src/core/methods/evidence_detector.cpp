@@ -278,6 +278,7 @@ class EvidenceDetector : public Detector {
   /// Dust and spray that were connected are loose after all.
   void tellPlumes() {
     for (Segment& segment : segments_) {
+      if (segment.is_mixed) continue;
       segment.is_of_plume =
           loose_echoes_.loosenPlume(sights_.newest(), segment.echoes.data(), segment.echoes.size(), judged_.roles);
     }

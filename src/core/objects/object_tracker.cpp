@@ -42,14 +42,14 @@ void ObjectTracker::update(const JudgedScan& scan, const Segments& segments, con
   const auto judge = [&](std::size_t i) {
     if (rules_.isTooLong(segments[i])) return;
     if (config_.motion) testMotion(trackOf(i), tests, scan.stamp, segments[i]);
-    verdicts[i] = decide(trackOf(i), tests, scan.stamp, segments[i]);
+    if (!segments[i].is_mixed) verdicts[i] = decide(trackOf(i), tests, scan.stamp, segments[i]);
   };
   workers.each(segments.size(), std::ref(judge));
   for (std::size_t i = 0; i < segments.size(); ++i) {
     if (rules_.isTooLong(segments[i])) continue;
     Track& track = trackOf(i);
     if (config_.motion) track.trace = traces_.leave(scan, segments[i], track.trace);
-    if (track.ever_dynamic) addObject(i, verdicts[i].proof, scan.stamp);
+    if (track.ever_dynamic && !segments[i].is_mixed) addObject(i, verdicts[i].proof, scan.stamp);
   }
   complete(segments, predictions, verdicts);
   const auto is_lost = [&](const Followed& followed) {
@@ -65,6 +65,7 @@ ObjectTracker::Track ObjectTracker::newTrack(std::uint32_t id, double stamp, con
   track.center = segment.center();
   track.extent = track.full_extent = segment.extent();
   track.rest = {segment.low, segment.high, stamp};
+  track.is_mixed = segment.is_mixed;
   return track;
 }
 
@@ -103,12 +104,14 @@ void ObjectTracker::match(double stamp, const Segments& segments) {
       if (std::abs(offset.x()) > step || std::abs(offset.y()) > step) continue;  // most are, and need no root
       const double distance = offset.norm();
       const bool is_alike = distance <= step && rules_.areAlike(track.extent, segments[c].extent());
-      if (is_alike) pairs_.push_back({distance, t, c});
+      if (is_alike) pairs_.push_back({track.is_mixed != segments[c].is_mixed, distance, t, c});
     }
   }
-  // The nearest pairs first: what stands still finds itself and leaves the rest to what moves.
+  // The nearest pairs first: what stands still finds itself and leaves the rest to what moves. What is mixed now, or is
+  // no longer, takes what its own parts have left.
   std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
-    return std::tie(a.distance, a.track, a.segment) < std::tie(b.distance, b.track, b.segment);
+    return std::tie(a.are_unlike, a.distance, a.track, a.segment) <
+           std::tie(b.are_unlike, b.distance, b.track, b.segment);
   });
   for (const Pair& pair : pairs_) {
     if (tracks_[pair.track].is_found || track_of_[pair.segment] >= 0) continue;
@@ -167,6 +170,7 @@ void ObjectTracker::follow(Track& track, double stamp, const Segment& segment) c
   track.extent = segment.extent();
   track.full_extent = track.extent.cwiseMax(std::exp(-elapsed / options_.extent_time) * track.full_extent);
   track.last_seen = stamp;
+  track.is_mixed = segment.is_mixed;
   const Eigen::Array3d low_shift = (segment.low - track.rest.low).array().abs();
   const Eigen::Array3d high_shift = (segment.high - track.rest.high).array().abs();
   if (low_shift.max(high_shift).maxCoeff() > options_.rest_shift) track.rest = {segment.low, segment.high, stamp};
@@ -178,8 +182,8 @@ void ObjectTracker::placeWorld(double stamp, const Segments& segments) {
   for (std::size_t k = 0; k < shifts_.size(); ++k) {
     shifts_[k].begin(sensor_);
     for (std::size_t i = 0; i < segments.size(); ++i) {
-      const bool tells = segments[i].echoes.size() >= options_.places_world && !segments[i].is_of_two_turns &&
-                         !rules_.isTooLong(segments[i]);
+      const bool is_one = !segments[i].is_of_two_turns && !segments[i].is_mixed && !rules_.isTooLong(segments[i]);
+      const bool tells = is_one && segments[i].echoes.size() >= options_.places_world;
       if (tells && traces_.find(trackOf(i).trace, stamp - options_.look_back[k], trace)) {
         shifts_[k].add(trace, segments[i]);
       }
@@ -197,7 +201,7 @@ void ObjectTracker::testMotion(Track& track, const MotionTests& tests, double st
     trace.move(shifts_[k].nowFromThen());
     const bool has_shape = !segment.is_of_two_turns && !rules_.isNarrow(segment);  // of one time, and its own
     displaced = displaced || (has_shape && tests.isDisplaced(trace, segment, shifts_[k].isKnown()));
-    if (SegmentRules::isMostlySettled(segment)) continue;
+    if (segment.is_mixed || SegmentRules::isMostlySettled(segment)) continue;
     const FormerPlace former = tests.lookBack(trace);
     receded |= former.left >= config_.min_echoes && former.left > former.still;
     advanced |= former.left >= test_options_.least_left && segment.new_echoes >= config_.min_echoes;
@@ -257,7 +261,8 @@ void ObjectTracker::complete(const Segments& segments, const Predictions& predic
           segment.settled_echoes > options_.settled_fragment * static_cast<double>(segment.echoes.size());
       const bool inside =
           ((segment.low - whole.center).array() > -half).all() && ((segment.high - whole.center).array() < half).all();
-      if (inside && !settled && !verdicts[i].moves()) verdicts[i] = {Proof::kPartOfMoving, true, verdicts[i].object};
+      if (inside && !settled && !segment.is_mixed && !verdicts[i].moves())
+        verdicts[i] = {Proof::kPartOfMoving, true, verdicts[i].object};
     }
   }
 }

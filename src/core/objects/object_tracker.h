@@ -89,6 +89,7 @@ class ObjectTracker {
     Rest rest;
     Sign receding, advancing, shifting, displaced;
     bool dynamic = false, ever_dynamic = false;
+    bool is_mixed = false;   ///< where it was seen last
     TraceHistory::Id trace;  ///< its last one
 
     Eigen::Vector3d centerAt(double stamp) const { return center + velocity * (stamp - last_seen); }
@@ -103,6 +104,7 @@ class ObjectTracker {
     bool is_claimed = false;      ///< by a segment of the present cloud that goes on from an earlier part
   };
   struct Pair {
+    bool are_unlike;  ///< only one of them is mixed
     double distance;
     std::size_t track, segment;
   };

@@ -246,7 +246,7 @@ void PartsBeside::relate(const JudgedScan& judged, Segments& segments) {
     const auto beside = std::lower_bound(segment.echoes.begin(), segment.echoes.end(), judged.own());
     const auto holds = [&](const Lot& lot) { return lot.holdsLastTurn(segment); };
     segment.is_of_two_turns = std::any_of(lots_.begin(), lots_.end(), holds);
-    segment.object = objects_[objectOf(beside, segment.echoes.end())].id;
+    if (!segment.is_mixed) segment.object = objects_[objectOf(beside, segment.echoes.end())].id;
   }
 }
 
@@ -296,6 +296,7 @@ void PartsBeside::settle(const SightPixels& pixels, const Segments& segments, co
                          JudgedScan& judged) {
   if (!is_in_parts_) return;
   for (std::size_t i = 0; i < segments.size(); ++i) {
+    if (segments[i].is_mixed) continue;
     const std::uint32_t place = placeOf(verdicts[i].object);
     for (const std::uint32_t echo : segments[i].echoes) object_of_[echo] = place;
     KeptObject& object = objects_[place];

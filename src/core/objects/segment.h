@@ -28,7 +28,8 @@ struct Segment {
   float lowest = 0.0F;                          ///< height above ground [m]; 0 where no ground is known
   float lowest_new = 0.0F, highest_new = 0.0F;  ///< the same of its new echoes
   Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();  ///< odometry frame [m]
-  bool cut_out = false;  ///< cut from a larger cluster where a moving object was predicted
+  bool is_mixed = false;  ///< of what stands and what may move, which is a segment of its own, too: only followed
+  bool cut_out = false;   ///< cut from a larger cluster where a moving object was predicted
   bool is_of_two_turns =
       false;                 ///< has echoes of the turn before, where this one has not looked yet: more of it may come
   bool is_of_plume = false;  ///< of dust or spray, not a thing

@@ -24,15 +24,18 @@ void Segmenter::segment(const JudgedScan& scan, const Predictions& predictions, 
   }
 
   roles_.assign(scan.points.size(), ClusterRole::kNone);
-  const auto is_mixed = [&](const Segment& segment) { return isMixed(segment, predictions); };
-  for (const Segment& segment : segments) {
-    if (!is_mixed(segment)) continue;
+  bool any_mixed = false;
+  for (Segment& segment : segments) {
+    segment.is_mixed = isMixed(segment, predictions);
+    if (!segment.is_mixed) continue;
+    any_mixed = true;
     for (const std::uint32_t echo : segment.echoes) {
       const bool may_move = scan.places[echo] != Place::kSettled && scan.roles[echo] == ClusterRole::kConnects;
       if (may_move) roles_[echo] = ClusterRole::kConnects;
     }
   }
-  if (!segments.removeIf(is_mixed)) return;
+  if (!any_mixed) return;
+  segments.removeIf([&](const Segment& segment) { return segment.is_mixed && !mayBeOne(segment); });
   clusters_.connect(scan.sensor, scan.points, scan.heights, roles_, scan.beams_apart, workers);
   append(scan, segments, workers);
 }

@@ -28,7 +28,8 @@ class Segmenter {
 
   /// The scan's clusters, one object each as far as can be told:
   ///  - what is predicted and has run into something larger is cut out of it;
-  ///  - a cluster that is new only in part (a pedestrian at a wall) is replaced by its parts that are not settled.
+  ///  - a cluster that is new only in part (a pedestrian at a wall) is replaced by its parts that are not settled. A
+  ///    long one stays as well, as mixed: it may be one thing that creeps.
   void segment(const JudgedScan& scan, const Predictions& predictions, Segments& segments,
                const Workers& workers = Workers::alone());
 
@@ -40,6 +41,7 @@ class Segmenter {
   void append(const JudgedScan& scan, Segments& segments, const Workers& workers);
   void cutOut(const JudgedScan& scan, const Prediction& object, std::size_t whole, Segments& segments) const;
   bool isMixed(const Segment& segment, const Predictions& predictions) const;
+  bool mayBeOne(const Segment& mixed) const { return rules_.isLong(mixed.extent()) && !rules_.isTooLong(mixed); }
 
   ObjectConfig config_;
   SegmenterOptions options_;

@@ -76,7 +76,7 @@ void expectAllKinds(const std::array<int, kPlaces>& places, const EvidenceConfig
     EXPECT_GT(count(Place::kAtSurface), 30);
   }
   if (config.birth_age) {
-    EXPECT_GT(count(Place::kLingering), 30);
+    EXPECT_GT(count(Place::kLingering), 10);
   }
 }
 

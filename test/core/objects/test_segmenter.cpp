@@ -14,11 +14,18 @@ using testing::JudgedScene;
 
 constexpr double kReach = 40.0;
 
-Segments found(const JudgedScene& scene, const Predictions& predictions = {}) {
+Segments foundWithMixed(const JudgedScene& scene, const Predictions& predictions = {}) {
   Segmenter segmenter(kReach, ObjectConfig{});
   Segments segments;
   segmenter.connect(scene.judged);
   segmenter.segment(scene.judged, predictions, segments);
+  return segments;
+}
+
+/// Each echo in one segment at most.
+Segments found(const JudgedScene& scene, const Predictions& predictions = {}) {
+  Segments segments = foundWithMixed(scene, predictions);
+  segments.removeIf([](const Segment& segment) { return segment.is_mixed; });
   return segments;
 }
 
@@ -107,6 +114,25 @@ TEST(Segmenter, APedestrianAtAWallIsOnlyHimself) {
   EXPECT_EQ(segments[0].echoes.size(), pedestrian);
   EXPECT_EQ(segments[0].echoes.front(), wall);
   EXPECT_TRUE(SegmentRules(ObjectConfig{}).isNew(segments[0]));
+}
+
+TEST(Segmenter, WhatIsMixedStaysAsWellIfItMayBeOneThing) {
+  for (const double length : {1.0, 2.0, 20.0, 26.0}) {
+    JudgedScene scene(0.0);
+    scene.face({10.0, -13.0, 0.3}, {0.0, length, 0.0}, 2.0, Place::kSettled);
+    const std::size_t settled = scene.judged.points.size();
+    scene.face({9.8, -13.0, 0.3}, {0.0, 0.4, 0.0}, 1.5, Place::kNew);
+    const Segments segments = foundWithMixed(scene);
+    const bool may_be_one = length > 1.75 && length < 25.0;
+    ASSERT_EQ(segments.size(), may_be_one ? 2U : 1U) << length;
+    EXPECT_EQ(segments[0].is_mixed, may_be_one);
+    if (may_be_one) {
+      EXPECT_EQ(segments[0].echoes.size(), scene.judged.points.size());
+    }
+    const Segment& apart = segments[segments.size() - 1];
+    EXPECT_FALSE(apart.is_mixed);
+    EXPECT_EQ(apart.echoes.size(), scene.judged.points.size() - settled);
+  }
 }
 
 TEST(Segmenter, WhatWasSeenElsewhereIsOneThoughItsSideIsSettled) {
