@@ -15,10 +15,10 @@ struct SegmentOptions {
   double most_coarse = 0.5;    ///< of the new echoes of something low: with more that are so it may have stood before
   double slim = 0.15;          ///< what is so slim and higher than `low` is a pole [m]
   double narrow = 0.25;        ///< a strip of something larger, seen through a gap, may be narrower than that [m]
-  double rail_length = 3.0;    ///< what is longer, and lower than the next, is a rail or a kerb [m]
-  double rail_height = 0.6;    ///< [m]
+  double rail_length = 3.0;    ///< what is longer, and lower than `rail_height`, is a rail or a kerb [m]
+  double rail_height = 0.6;    ///< of rails and kerbs at most [m]
   double one_beam = 0.12;      ///< what is lower was hit by one beam alone [m]
-  double high = 0.8;           ///< and what begins higher by none beneath, though it may stand [m]
+  double high = 0.8;           ///< where that begins higher, no beam hit what holds it up [m]
   double overhead = 2.0;       ///< above ground: above people's heads [m]
   double upright_ratio = 0.3;  ///< height by length: about that of a car
   double thin_angle = 0.02;    ///< seen under less, it is no higher than one or two beams of any sensor [rad]
