@@ -107,8 +107,8 @@ void ObjectTracker::match(double stamp, const Segments& segments) {
       if (is_alike) pairs_.push_back({track.is_mixed != segments[c].is_mixed, distance, t, c});
     }
   }
-  // The nearest pairs first: what stands still finds itself and leaves the rest to what moves. What is mixed now, or is
-  // no longer, takes what its own parts have left.
+  // The nearest pairs first: what stands still finds itself and leaves the rest to what moves. Something mixed that was
+  // not so before, or the other way round, takes what is left then.
   std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
     return std::tie(a.are_unlike, a.distance, a.track, a.segment) <
            std::tie(b.are_unlike, b.distance, b.track, b.segment);
