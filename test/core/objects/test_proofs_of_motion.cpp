@@ -266,5 +266,61 @@ TEST(ProofsOfMotion, WhatHitsNoFreshPlacesStandsThereHoweverNewTheyAre) {
   EXPECT_EQ(movingOf(10, 11), 0U) << "fewer than min_echoes";
 }
 
+/// Proof of what drives ahead of the sensor at its speed, so many metres away, of this width and height.
+Proof proofAhead(double away, double bottom, double width, double height) {
+  Followed followed;
+  for (int k = 0; k < 10; ++k) {
+    JudgedScene scene(0.1 * k, 1.2 * k);
+    scene.face({1.2 * k + away, -0.5 * width, bottom}, {0.0, width, 0.0}, height, Place::kUnobserved, 0.05);
+    followed.step(scene);
+  }
+  return followed.verdicts.empty() ? Proof::kNone : followed.verdicts[0].proof;
+}
+
+TEST(ProofsOfMotion, ARailOrOneBeamHighUpIsNotProvenByItsRear) {
+  EXPECT_EQ(proofAhead(12.0, 0.3, 1.8, 1.2), Proof::kRearReceded);
+  EXPECT_NE(proofAhead(12.0, 0.3, 4.0, 0.5), Proof::kRearReceded);
+  EXPECT_NE(proofAhead(30.0, 0.85, 1.8, 0.1), Proof::kRearReceded);
+  EXPECT_EQ(proofAhead(12.0, 0.3, 2.5, 0.5), Proof::kRearReceded) << "shorter than a rail";
+  EXPECT_EQ(proofAhead(30.0, 0.7, 1.8, 0.1), Proof::kRearReceded) << "lower";
+}
+
+TEST(ProofsOfMotion, WhatIsNoLongerMixedGoesOnWithItsPart) {
+  // Too few echoes to be told as displaced: its part that is not settled proves for itself.
+  Followed followed;
+  for (int k = 0; k <= 10; ++k) {
+    JudgedScene scene(0.1 * k);
+    scene.face({8.0 + 0.5 * k, 2.0, 0.3}, {0.0, 0.75, 0.0}, 1.0, k < 10 ? Place::kSettled : Place::kUnobserved, 0.25);
+    scene.face({8.0 + 0.5 * k, 3.0, 0.3}, {0.0, 1.0, 0.0}, 1.0, Place::kUnobserved, 0.25);
+    const std::size_t all = scene.judged.points.size();
+    for (std::size_t i = 0; k < 10 && i < 6; ++i) scene.judged.places[all - 1 - i] = Place::kNew;
+    scene.face({30.0, -5.0, 0.0}, {0.0, 20.0, 0.0}, 4.0, Place::kSettled, 0.2);  // seen where it has left
+    followed.step(scene);
+    const bool is_mixed = followed.segments[0].is_mixed;
+    EXPECT_EQ(is_mixed, k < 10) << "scan " << k;
+    if (is_mixed) {
+      EXPECT_EQ(followed.verdicts[0].proof, Proof::kNone);
+      EXPECT_EQ(followed.verdicts[0].object, 0U) << "it is no object";
+    }
+  }
+  EXPECT_TRUE(followed.verdicts[0].moves());
+}
+
+TEST(ProofsOfMotion, WhatMovedAndIsMixedNowIsNoObjectMeanwhile) {
+  Followed followed;
+  for (int k = 0; k <= 10; ++k) {
+    JudgedScene scene(0.1 * k);
+    addVehicle(scene, 8.0 + 0.1 * k, 2.0, k < 10 ? Place::kNew : Place::kSettled);
+    const std::size_t all = scene.judged.points.size();
+    for (std::size_t i = 0; k == 10 && i < 6; ++i) scene.judged.places[all - 1 - i] = Place::kNew;
+    followed.step(scene);
+    if (k < 10) {
+      EXPECT_EQ(followed.tracker.objects().size(), 1U);
+    }
+  }
+  ASSERT_TRUE(followed.segments[0].is_mixed);
+  for (const Object& object : followed.tracker.objects()) EXPECT_LE(object.echoes, 6U);
+}
+
 }  // namespace
 }  // namespace donex
