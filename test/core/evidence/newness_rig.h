@@ -59,15 +59,15 @@ class Rig {
   SightView before;  ///< of the scans before the present one, asked in its points
 };
 
-/// Walls ahead by sector, each now near, now far, now gone; the vehicle drives and turns.
+/// Walls ahead by sector, each now near, now far, now gone, now out of view; the vehicle drives and turns.
 class RestlessRoom {
  public:
   RestlessRoom(unsigned seed, bool moves) : random_(seed), moves_(moves) { ranges_.fill(9.0); }
 
   Scan next() {
-    constexpr std::array<double, 5> kRanges{2.5, 5.0, 7.0, 9.0, 30.0};
+    constexpr std::array<double, 6> kRanges{2.5, 5.0, 7.0, 9.0, 30.0, kOutOfView};
     for (double& range : ranges_) {
-      if (uniform(0, 1) < 0.15) range = kRanges[std::uniform_int_distribution<std::size_t>(0, 4)(random_)];
+      if (uniform(0, 1) < 0.15) range = kRanges[std::uniform_int_distribution<std::size_t>(0, 5)(random_)];
     }
     if (moves_) {
       pose_ = pose_ * Eigen::Translation3d(uniform(0, 0.4), 0.0, uniform(-0.2, 0.2)) *
@@ -80,7 +80,9 @@ class RestlessRoom {
       for (int beam = -2; beam <= 2; ++beam) {
         if (uniform(0, 1) < 0.1) continue;
         const double angle = (azimuth + uniform(-0.1, 0.1)) * M_PI / 260.0, slope = 0.03 * beam;
-        const double range = ranges_[static_cast<std::size_t>((azimuth + 90) / 12)] + uniform(-0.2, 0.2);
+        const double wall = ranges_[static_cast<std::size_t>((azimuth + 90) / 12)];
+        if (wall == kOutOfView) continue;
+        const double range = wall + uniform(-0.2, 0.2);
         scan.echoes.push_back((range * Eigen::Vector3d(std::cos(angle), std::sin(angle), slope)).cast<float>());
       }
     }
@@ -88,6 +90,7 @@ class RestlessRoom {
   }
 
  private:
+  static constexpr double kOutOfView = 0.0;
   double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
 
   std::mt19937 random_;
