@@ -60,7 +60,7 @@ struct EvidenceConfig {
   double sight_gap = 2.2;  // [deg]
   int settled_free_scans = 4;
   bool birth_age = true;
-  double birth_window = 0.8;  // [s]
+  double birth_window = 1.0;  // [s]
   bool neighbourhood = true;
   bool ground = true;
   double ground_clearance = 0.25;  // [m]
